@@ -356,6 +356,30 @@ ODD_INPUT = Kind(
     "the program takes the number as it is, in the unit of its key",
     "check the unit: moduli of steel are 2.06e5 MPa, those of plastics some 1e3 MPa; torques are in N m",
 )
+THICKNESS = Kind(
+    "tooth thickness of the {gear}: the allowance A_sn is {allowance:+.4g} um beside profile_shift = {shift:.4f}, "
+    "{source}; with profile_shift = {generating:.4f} the same teeth have no allowance",
+    "allowances of real teeth are small, and negative, since they make the backlash. A measure over teeth, balls or "
+    "pins without a profile shift counts as an allowance on teeth of `profile_shift = 0`. Flanks and roots are those "
+    "of the measured teeth; tip diameters that are not given, and c' of ISO 6336-1, are those of the profile shift",
+    "give the `profile_shift` of the drawing; where the drawing has none, give the value that leaves no allowance, and"
+    " `tip_diameter_mm`; an allowance of thinner teeth is negative",
+)
+LONG_TIP = Kind(
+    "tip of the {gear}: tip_diameter_mm is that of a tip alteration of {alteration:+.3g} modules beside profile_shift "
+    "= 0, the default, since none is given; with profile_shift = {shift:.4f} the tip has no alteration",
+    "a basic rack of ISO 53 leaves no longer tip. On gears with a long and a short addendum the tip diameter has the "
+    "profile shift in it; without it flanks, thickness and root are those of other teeth",
+    "give the `profile_shift` of the drawing; `profile_shift = 0` says that the teeth are only longer",
+)
+WIDE_BACKLASH = Kind(
+    "wide backlash: {backlash:.3g} mm along the normal of the flanks, {modules:.2g} modules: at the centre distance of "
+    "{distance:.4f} mm the sum of the profile shifts is {given:.4f}, and a sum of {wanted:.4f} leaves no backlash",
+    "gears have a backlash of some hundredths of a module. With a centre distance and no profile shifts teeth are too "
+    "thin by the shifts that are missing: bending and root stress are those of such teeth",
+    "give the `profile_shift` of one gear: that of the other one follows from the centre distance; or give the tooth "
+    "thickness of both; nothing, if the backlash is meant",
+)
 CONTACT_RATIO = Kind(
     "the contact ratio is {ratio:.3g}, below 1: over a part of each pitch the gears touch at a tip or a face end only",
     "the path of contact is shorter than a pitch: one pair leaves it before the next pair enters it, and meanwhile a "

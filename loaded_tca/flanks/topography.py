@@ -25,14 +25,14 @@ The columns are one of
   deviates by what the profile line does at its radius and by what the helix line does at its place along the face, both
   less what they do where they cross. Of lines of more than 50 points means of points that follow each other count.
 
-Each has ``_um``, ``_mm``, ``_m`` or ``_in`` behind it, but normals and ``line``. Rows of points come in any order with
-the columns ``profile_index`` and ``lengthwise_index``, or ``i`` and ``j``, of which the one whose lines of points are
-longer runs along the tooth; without them in the order of the grid, the profile running fastest, and a comment says how
-many points there are: ``# points = 5 x 9`` (profile x lengthwise). A column ``weight``, without a unit, has the weights
-of the points where settings follow from them. Semicolons and tabs separate values, too, and a first line ``sep=;`` is
-read; blanks do where the line of names has nothing else. Names and values may be quoted, the sign for micro in a name
-stands for u, and separators at the ends of lines, as spreadsheets write them, are left out. Numbers have a decimal
-point.
+Each has ``_um``, ``_mm``, ``_m``, ``_in`` or ``_uin`` behind it, but normals and ``line``. Rows of points come in any
+order with the columns ``profile_index`` and ``lengthwise_index``, or ``i`` and ``j``, of which the one whose lines of
+points are longer runs along the tooth; without them in the order of the grid, the profile running fastest, and a
+comment says how many points there are: ``# points = 5 x 9`` (profile x lengthwise). A column ``weight``, without a
+unit, has the weights of the points where settings follow from them. Semicolons and tabs separate values, too, and a
+first line ``sep=;`` is read; blanks do where the line of names has nothing else. Names and values may be quoted, the
+sign for micro in a name stands for u, and separators at the ends of lines, as spreadsheets write them, are left out.
+Numbers have a decimal point.
 
 References
 ----------
@@ -61,7 +61,7 @@ from loaded_tca.plain import plain
 
 LARGEST_FILE = 2**23
 """Bytes of a topography file; a point takes about 60."""
-UNITS = {"um": 1e-3, "mm": 1.0, "m": 1e3, "in": 25.4}
+UNITS = {"um": 1e-3, "mm": 1.0, "m": 1e3, "in": 25.4, "uin": 25.4e-6}
 """Unit at the end of a column's name -> factor to mm."""
 INDICES, MACHINE_INDICES = ("profile_index", "lengthwise_index"), ("i", "j")
 LINE, WEIGHT = "line", "weight"
@@ -82,7 +82,7 @@ GDE = (
     "an XML file: GDE (VDI/VDE 2610) and other XML of measuring centres are not read, since no public description of "
     "their elements is known; have the points written as a table, whose columns docs/guide/measured_flank.md names"
 )
-LINES_NOTE = "lines"
+LINES_NOTE, TWO_LINES = "lines", "profile and helix"
 """Among the notes of a flank that was measured in two lines, which have no twist."""
 MOST_PROBLEMS = 10
 """Problems of single lines that are told; more of them are counted."""
@@ -129,6 +129,7 @@ def parse_topography(text: str) -> Topography:
     lines = table_in(text)
     comments = [comment.split("=", 1) for comment in lines.comments]
     notes = {part[0].strip(): part[1].strip() for part in comments if len(part) == 2}
+    notes.pop(LINES_NOTE, None)  # which columns say, and no comment
     if not lines.rows:
         raise InputError("no points: a line with the names of the columns, and one line per point, are asked for")
     columns = _factors(lines.number, lines.names)
@@ -138,7 +139,7 @@ def parse_topography(text: str) -> Topography:
         table["deviation"] = -table.pop("removed")
     if LINE in table:
         parts = (table[name] for name in (LINE, "radius", "axial", "deviation"))
-        return MeasuredDeviations(*flank_of_lines(*parts), notes | {LINES_NOTE: "profile and helix"})
+        return MeasuredDeviations(*flank_of_lines(*parts), notes | {LINES_NOTE: TWO_LINES})
     by_machine = MACHINE_INDICES[0] in table
     if INDICES[0] in table or by_machine:
         names = MACHINE_INDICES if by_machine else INDICES

@@ -1,4 +1,4 @@
-"""Span and ball measurements of cylindrical gears, and the tooth thickness that follows from either (ISO 21771, 21773).
+"""Measures of cylindrical gears over spans, balls and pins, and the tooth thickness that follows (ISO 21771, 21773).
 
 Lengths are in mm, angles in rad. The allowance A_sn is how much thicker than nominal a tooth is in the normal section
 at the reference cylinder: negative, with backlash.
@@ -10,7 +10,7 @@ number of teeth, s = +1 of an external gear and -1 of a ring, both have the same
 from __future__ import annotations
 
 from math import acos, cos, hypot, inf, pi, sin, sqrt, tan
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from loaded_tca.errors import InputError, require
 from loaded_tca.gears.involute import InvoluteGear, inverse_involute, involute
@@ -19,6 +19,8 @@ from loaded_tca.plain import plain
 LARGEST_ALLOWANCE = 0.5
 """Of either sign, over the module: a third of the thickness of a tooth. Measured over another number of teeth a span
 differs by a base pitch, 3 modules."""
+Body = Literal["ball", "pin"]
+"""What lies in two spaces where a measure is taken over them."""
 
 
 class MeasuredGear(InvoluteGear):
@@ -97,12 +99,49 @@ class MeasuredGear(InvoluteGear):
         >>> round(RingGear(teeth=-60, normal_module=3.0, face_width=20.0).ball_measurement(5.0), 4)
         173.2626
         """
-        return ball_measurement(self, diameter)
+        return _measurement_over(self, "ball", diameter)
+
+    def pin_measurement(self, diameter: float) -> float:
+        """Measure M_dR over two pins in opposite spaces, of a ring between them [mm]; InputError off the flanks.
+
+        Examples
+        --------
+        >>> from loaded_tca.gears import CylindricalGear
+        >>> gear = CylindricalGear(teeth=21, normal_module=2.0, face_width=20.0, helix_angle=0.3)
+        >>> round(gear.ball_measurement(3.5), 4), round(gear.pin_measurement(3.5), 4)
+        (48.7886, 48.9156)
+        """
+        return _measurement_over(self, "pin", diameter)
 
 
 def _side(gear: MeasuredGear) -> int:
     """+1 of an external gear, -1 of a ring, which is measured from inside."""
     return 1 if gear.teeth > 0 else -1
+
+
+def allowance_of_thickness(gear: MeasuredGear, thickness: float) -> float:
+    """Allowance A_sn of a gear whose normal tooth thickness s_n is given [mm]; that of ``gear`` itself does not count.
+
+    Parameters
+    ----------
+    gear : CylindricalGear or RingGear
+    thickness : float [mm]
+        In the normal section at the reference cylinder, an arc.
+
+    Raises
+    ------
+    InputError
+        If the allowance is above half a module.
+
+    Examples
+    --------
+    >>> from loaded_tca.gears import CylindricalGear
+    >>> gear = CylindricalGear(teeth=25, normal_module=2.0, face_width=20.0)
+    >>> round(1e3 * allowance_of_thickness(gear, 3.1016), 1)  # um
+    -40.0
+    """
+    nominal = gear.normal_module * (0.5 * pi + 2.0 * gear.profile_shift * tan(gear.pressure_angle))
+    return _allowance(gear, thickness - nominal, f"normal_tooth_thickness: {plain(thickness, 6)} mm", nominal)
 
 
 def span_teeth(gear: MeasuredGear) -> int:
@@ -195,30 +234,34 @@ def _span(gear: MeasuredGear, teeth: int, shift: float) -> float:
     return gear.normal_module * (cos(gear.pressure_angle) * pitches + thicker)
 
 
-def ball_measurement(gear: MeasuredGear, diameter: float) -> float:
-    r"""Measure M_dK over two balls in spaces that are as opposite as the teeth let them [mm]; of a ring between them.
+def _measurement_over(gear: MeasuredGear, body: Body, diameter: float) -> float:
+    r"""Measure M_dK over two balls, or M_dR over two pins, in opposite spaces [mm]; of a ring between them.
 
     .. math:: \mathrm{inv}\,\alpha_K = s \left(\psi_b + \frac{D_M}{\lvert z\rvert m_n \cos\alpha_n}
               - \frac{\pi}{\lvert z\rvert}\right),\qquad
-              M_{dK} = \frac{d_b}{\cos\alpha_K} \cos\delta + s D_M
+              M_{dK} = d_K \cos\delta + s D_M,\qquad d_K = \frac{d_b}{\cos\alpha_K}
 
     with s = 1 of an external gear and -1 of a ring, delta = 0 for an even number of teeth, pi/(2 z) for an odd one, and
-    :math:`\psi_b = s_t/d + s\,\mathrm{inv}\,\alpha_t` of the teeth with their allowance. Pins have the same measure
-    between straight teeth of a ring; in helical ones they touch at their ends.
+    :math:`\psi_b = s_t/d + s\,\mathrm{inv}\,\alpha_t` of the teeth with their allowance. A pin lies along the helix
+    of its space and touches the flanks where a ball of its diameter does. Straight teeth, and an even number of helical
+    ones, have the same measure over both. Of an odd number of helical teeth the pins stand opposite each other half an
+    axial pitch apart along the face, M_dR = d_K + D_M, while balls lie in one transverse plane.
 
     Raises
     ------
     InputError
-        If the balls touch beside the flanks, rest on the root, or do not stand out of the tips.
+        If balls or pins touch beside the flanks, rest on the root, or do not stand out of the tips; of pins also if a
+        ring is helical, where they touch at their ends, or the face is too narrow for pins that stand opposite.
 
     References
     ----------
-    ISO 21771:2007; DIN 21773:2014.
+    ISO 21771:2007; DIN 3960:1987; DIN 21773:2014.
     """
-    centre, side = _ball_centre(gear, diameter), _side(gear)
+    opposite, side = _opposite(gear, body), _side(gear)
+    centre = _centre(gear, body, diameter)
     tangent = sqrt((centre - gear.base_radius) * (centre + gear.base_radius))
     contact = tangent - 0.5 * side * diameter * cos(gear.base_helix_angle)
-    what = f"ball_diameter: a ball of {plain(diameter, 6)} mm"
+    what = f"{body}_diameter: a {body} of {plain(diameter, 6)} mm"
     require(_touches(gear, hypot(gear.base_radius, contact) if contact > 0.0 else 0.0, what), owner=gear.name)
     room = side * (centre - gear.root_radius), side * (centre - gear.tip_radius)
     require(
@@ -226,7 +269,7 @@ def ball_measurement(gear: MeasuredGear, diameter: float) -> float:
         (room[1] > -0.5 * diameter, f"{what} does not stand out of the tips"),
         owner=gear.name,
     )
-    return 2.0 * centre * _opposite(gear) + side * diameter
+    return 2.0 * centre * opposite + side * diameter
 
 
 def allowance_of_balls(gear: MeasuredGear, measurement: float, diameter: float) -> float:
@@ -244,14 +287,36 @@ def allowance_of_balls(gear: MeasuredGear, measurement: float, diameter: float) 
     >>> round(1e3 * allowance_of_balls(gear, 44.8395, 3.5))  # um
     -40
     """
-    side, between = _side(gear), "over" if gear.teeth > 0 else "between"
-    centre = 0.5 * (measurement - side * diameter) / _opposite(gear)
-    what = f"ball_measurement: {plain(measurement, 6)} mm {between} balls of {plain(diameter, 6)} mm"
+    return _allowance_over(gear, "ball", measurement, diameter)
+
+
+def allowance_of_pins(gear: MeasuredGear, measurement: float, diameter: float) -> float:
+    """Allowance A_sn of a gear that is measured over two pins [mm]; that of ``gear`` itself does not count.
+
+    Raises
+    ------
+    InputError
+        As :func:`allowance_of_balls`; also if a ring is helical, or the face too narrow for pins that stand opposite.
+
+    Examples
+    --------
+    >>> from loaded_tca.gears import CylindricalGear
+    >>> gear = CylindricalGear(teeth=21, normal_module=2.0, face_width=20.0, helix_angle=0.3)
+    >>> round(1e3 * allowance_of_pins(gear, 48.8234, 3.5))  # um
+    -40
+    """
+    return _allowance_over(gear, "pin", measurement, diameter)
+
+
+def _allowance_over(gear: MeasuredGear, body: Body, measurement: float, diameter: float) -> float:
+    side, between, opposite = _side(gear), "over" if gear.teeth > 0 else "between", _opposite(gear, body)
+    centre = 0.5 * (measurement - side * diameter) / opposite
+    what = f"{body}_measurement: {plain(measurement, 6)} mm {between} {body}s of {plain(diameter, 6)} mm"
     require(
-        (0.0 < diameter < inf, f"ball_diameter: {diameter} mm is not positive and finite"),
+        (0.0 < diameter < inf, f"{body}_diameter: {diameter} mm is not positive and finite"),
         (
             gear.base_radius < centre < inf,
-            f"{what} puts the balls inside the base circle, diameter {plain(2.0 * gear.base_radius, 6)} mm",
+            f"{what} puts the {body}s inside the base circle, diameter {plain(2.0 * gear.base_radius, 6)} mm",
         ),
         owner=gear.name,
     )
@@ -262,18 +327,18 @@ def allowance_of_balls(gear: MeasuredGear, measurement: float, diameter: float) 
     )
     allowance = 2.0 * gear.reference_radius * cos(gear.helix_angle) * (half - nominal)
     value = side * (nominal + widening - pi / gear.tooth_count)
-    expected = 2.0 * gear.base_radius / cos(inverse_involute(max(0.0, value))) * _opposite(gear) + side * diameter
+    expected = 2.0 * gear.base_radius / cos(inverse_involute(max(0.0, value))) * opposite + side * diameter
     return _allowance(gear, allowance, what, expected)
 
 
-def _ball_centre(gear: MeasuredGear, diameter: float) -> float:
-    """Radius of the centres of balls that touch both flanks of their space."""
-    require((0.0 < diameter < inf, f"ball_diameter: {diameter} mm is not positive and finite"), owner=gear.name)
+def _centre(gear: MeasuredGear, body: Body, diameter: float) -> float:
+    """Radius of the centres of balls or pins that touch both flanks of their space."""
+    require((0.0 < diameter < inf, f"{body}_diameter: {diameter} mm is not positive and finite"), owner=gear.name)
     angle = gear.half_thickness_angle_at_base + _half_angle_of_ball(gear, diameter) - pi / gear.tooth_count
     value = _side(gear) * angle
     if value <= 0.0:
         fate = "falls between the flanks" if gear.teeth > 0 else "does not go between the flanks"
-        raise InputError(f"{gear.name}: ball_diameter: a ball of {plain(diameter, 6)} mm {fate}")
+        raise InputError(f"{gear.name}: {body}_diameter: a {body} of {plain(diameter, 6)} mm {fate}")
     return gear.base_radius / cos(inverse_involute(value))
 
 
@@ -282,8 +347,29 @@ def _half_angle_of_ball(gear: MeasuredGear, diameter: float) -> float:
     return diameter / (gear.tooth_count * gear.normal_module * cos(gear.pressure_angle))
 
 
-def _opposite(gear: MeasuredGear) -> float:
-    """What remains of the radius across the axis where no two spaces are opposite."""
+def _opposite(gear: MeasuredGear, body: Body) -> float:
+    """What remains of the radius across the axis; below 1 where no two spaces are opposite."""
+    if body == "pin" and gear.helix_angle != 0.0:
+        require(
+            (
+                gear.teeth > 0,
+                "pin_measurement: pins between the helical teeth of a ring, which are hollow, touch at their ends; "
+                "measure between balls",
+            ),
+            owner=gear.name,
+        )
+        if gear.teeth % 2 == 1:
+            apart = 0.5 * pi * gear.normal_module / abs(sin(gear.helix_angle))
+            require(
+                (
+                    apart < gear.face_width,
+                    "pin_measurement: pins in the spaces of an odd number of helical teeth stand opposite half an "
+                    f"axial pitch apart along the face, {plain(apart)} mm, and the face width is "
+                    f"{plain(gear.face_width, 6)} mm; measure over balls",
+                ),
+                owner=gear.name,
+            )
+            return 1.0
     return 1.0 if gear.teeth % 2 == 0 else cos(0.5 * pi / gear.tooth_count)
 
 

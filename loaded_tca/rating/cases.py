@@ -12,6 +12,7 @@ from loaded_tca.arrays import Array, Mask
 from loaded_tca.errors import InputError
 from loaded_tca.plain import apart
 from loaded_tca.reference.iso6336_3_strength import mean_stress_sensitivities
+from loaded_tca.scene.load import ROUNDED
 
 if TYPE_CHECKING:
     from loaded_tca.scene import Scene
@@ -157,6 +158,6 @@ def problems_of_cases(
             kind = strength.kind_of_material
             yield f"load.case: reversed bins; the standard has no Y_M of kind {kind!r} ({name})"
     highest = load.largest_Nm
-    if 1e3 * highest > largest * (1.0 + 1e-9):
+    if 1e3 * highest > largest * (1.0 + ROUNDED):
         found, most = apart([highest, 1e-3 * largest])
         yield f"load.case: a bin has {found} N m; allowed up to {most}, the largest analysed torque"

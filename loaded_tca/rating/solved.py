@@ -84,10 +84,11 @@ class SolvedLoads:
         return cls(torque, face_load_factor, transverse_load_factor, mesh_load_factor, unknown, places)
 
     def at(self, torques: Array) -> SolvedLoads:
-        """The same under other torques, none above the largest: as solved, or interpolated.
+        """The same under other torques, none above the largest but by rounding: as solved, or interpolated.
 
         Factors, and stresses over the power of the torque that they grow with, are monotone cubics (PCHIP) between
-        their solved values, logarithms over the logarithm of the torque; below the smallest torque they go on straight.
+        their solved values, logarithms over the logarithm of the torque; below the smallest torque they go on straight,
+        above the largest they stay.
         """
         nearest = self._nearest(torques)
         exact = self._of(nearest)
@@ -157,7 +158,7 @@ class SolvedLoads:
         shape = -1, *[1] * (values.ndim - 1)
         nodes, wanted = np.log(self.torque), np.log(torques)
         rest = np.log(values) - power * nodes.reshape(shape)
-        inside = np.maximum(wanted, nodes[0])
+        inside = np.clip(wanted, nodes[0], nodes[-1])
         if len(nodes) == 1:
             logarithms = np.broadcast_to(rest, (len(torques), *values.shape[1:]))
         else:
@@ -165,7 +166,7 @@ class SolvedLoads:
 
             logarithms = PchipInterpolator(nodes, rest)(inside)
             slope = (rest[1] - rest[0]) / (nodes[1] - nodes[0])
-            logarithms = logarithms + slope * (wanted - inside).reshape(shape)
+            logarithms = logarithms + slope * np.minimum(wanted - nodes[0], 0.0).reshape(shape)
         return np.asarray(np.exp(logarithms + power * wanted.reshape(shape)))
 
     def _straight(self, values: Array, torques: Array) -> Array:

@@ -55,6 +55,7 @@ def warn_of_gears(scene: Scene, pair: GearPair, *, whole_revolution: bool = Fals
     """
     for sentence in [
         *scene.interferences(),
+        *scene.missing_shifts(),
         *_short_path(scene),
         *_odd_inputs(scene),
         *_small_clearances(scene, pair),

@@ -16,7 +16,7 @@ from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.modification import FlankModifications
 from loaded_tca.flanks.rounding import EdgeRounding
 from loaded_tca.flanks.spline import DEFAULT_POINTS, fitted, measured, smoothing_coefficients
-from loaded_tca.flanks.topography import MeasuredDeviations, MeasuredPoints, Topography
+from loaded_tca.flanks.topography import LINES_NOTE, TWO_LINES, MeasuredDeviations, MeasuredPoints, Topography
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.tooth_deviations import ToothDeviations
@@ -220,7 +220,7 @@ class DescribedTooth(ToothGeometry):
 def build_topography(measurement: Measurement, upwards: int = 1) -> Topography:
     """Return the measured points, or deviations; ``upwards`` is that of the frame of the flank."""
     values = in_base_units(measurement)
-    notes = {"source": values["source"]}
+    notes = {"source": values["source"]} | ({LINES_NOTE: TWO_LINES} if values["two_lines"] else {})
     topography: Topography
     if measurement.x_mm is not None:
         topography = MeasuredPoints(np.stack([values["x"], values["y"], values["z"]], axis=-1), notes)

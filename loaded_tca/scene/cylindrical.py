@@ -30,7 +30,7 @@ from loaded_tca.scene.rows import Label, fixed
 from loaded_tca.scene.section import Rule, Section, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, AMOUNT_um, DIAMETER_mm, ERROR_deg, ERROR_mm, Pair, SLOPE_um, below
 from loaded_tca.scene.standards import ContactStandard, contact_standard, slope_tolerances
-from loaded_tca.scene.thickness import as_measured, thickness_rows
+from loaded_tca.scene.thickness import as_measured, odd_backlash, odd_thickness, thickness_rows
 from loaded_tca.scene.tools import (
     ADDENDUM,
     DEDENDUM,
@@ -42,6 +42,7 @@ from loaded_tca.scene.tools import (
     cut_parameters,
     needs_protuberance,
     needs_stock,
+    odd_tip,
     rack_rows,
     shortening,
     tip_alteration,
@@ -315,6 +316,17 @@ class CylindricalScene(BlankScene):
         )
         return pinion, wheel
 
+    def missing_shifts(self) -> Sequence[str]:
+        """Return sentences on teeth that look as if a profile shift of theirs were not given."""
+        mesh, sections = self.mesh(), (self.pinion, self.wheel)
+        absent = [own.profile_shift is None for own in sections]
+        follows = self.geometry.centre_distance_mm is not None and sum(absent) == 1
+        sentences = []
+        for gear, own, default in zip((mesh.pinion, mesh.wheel), sections, absent, strict=True):
+            thick = odd_thickness(gear, own.profile_shift, follows=follows)
+            sentences += thick or (odd_tip(gear, own) if default and not follows else [])
+        return [*sentences, *odd_backlash(mesh)]
+
     @property
     def pairs_in_contact(self) -> float:
         """The total contact ratio."""
@@ -415,7 +427,7 @@ class CylindricalScene(BlankScene):
             *rack_rows(mesh),
             *_diameter_rows(mesh),
             *chamfer_rows(mesh),
-            *thickness_rows(mesh, [self.pinion.ball_diameter_mm, self.wheel.ball_diameter_mm]),
+            *thickness_rows(mesh, (self.pinion, self.wheel)),
             ("tip clearance of the mating gear c [mm]", *(fixed(clearance, 4) for clearance in mesh.tip_clearances)),
         ]
 

@@ -12,7 +12,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, named
 from loaded_tca.flanks.spline import DEFAULT_POINTS, FEWEST_POINTS
-from loaded_tca.flanks.topography import MeasuredPoints, read_topography
+from loaded_tca.flanks.topography import LINES_NOTE, MeasuredPoints, read_topography
 from loaded_tca.scene.keys import Choice, Grid, Line, List, Number, Whole, above_zero, key, shown
 from loaded_tca.scene.section import Rule, Section, rule, subsection
 
@@ -79,11 +79,21 @@ class Measurement(Section):
     )
     y_mm: Points | None = key(COORDINATES_mm, "y of the points", None, "as `x_mm`")
     z_mm: Points | None = key(COORDINATES_mm, "z of the points", None, "as `x_mm`")
+    two_lines: bool = key(
+        Choice((False, True)),
+        "whether the points follow from a profile line and a helix line, which do not measure a twist",
+        False,
+    )
     source: str = key(Line(), "where the points come from", "")
 
     rules: ClassVar[tuple[Rule, ...]] = (
         Rule(ALL_COLUMNS, _one_set_of_columns),
         Rule(ALL_COLUMNS, _one_shape),
+        rule(
+            ("two_lines", "deviation_um"),
+            lambda lines, deviations: not lines or deviations is not None,
+            "found true; lines have deviations, and the points are not given by deviation_um",
+        ),
     )
 
     @property
@@ -206,4 +216,5 @@ def read_measurement(file: str) -> Measurement:
         for name, values in zip(names, columns, strict=True)
     }
     with named(f"file: {file}"):
-        return Measurement(**lines, source=Path(file).name[: Line().longest])
+        two_lines = LINES_NOTE in topography.notes
+        return Measurement(**lines, two_lines=two_lines, source=Path(file).name[: Line().longest])

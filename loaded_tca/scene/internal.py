@@ -250,7 +250,7 @@ class InternalScene(CylindricalScene):
             *rack_rows(mesh),
             *_diameter_rows(mesh),
             *chamfer_rows(mesh),
-            *thickness_rows(mesh, [self.pinion.ball_diameter_mm, self.wheel.ball_diameter_mm]),
+            *thickness_rows(mesh, (self.pinion, self.wheel)),
             ("tip clearance of the mating gear c [mm]", *(fixed(clearance, 4) for clearance in mesh.tip_clearances)),
         ]
 

@@ -34,6 +34,9 @@ LEAST_EXPONENT, NEGLIGIBLE = 4.0, 1e-4
 part of it do not matter unless load factors raise them: of torques below them the smallest alone is solved."""
 SMALLEST_SOLVED = 0.01
 """Of the largest torque: a bin below is no reason to solve its torque."""
+ROUNDED = 1e-4
+"""By how much, relatively, a bin may be above the largest torque solved: torques of drawings in N m and in lbf in are
+rounded to four digits and more."""
 DIGITS = 5
 """Of torques that are solved between those of bins."""
 
@@ -249,7 +252,7 @@ def within_solved(load: AnyLoad | None, torques: Sequence[float] | None) -> str 
     """What is wrong with torques [N m] that are solved in the place of those of a spectrum."""
     if load is None or load.case is None or torques is None:
         return None
-    if load.largest_Nm <= max(torques):
+    if load.largest_Nm <= max(torques) * (1.0 + ROUNDED):
         return None
     found, most = apart([load.largest_Nm, max(torques)])
     return f"a bin has {found} N m; allowed up to {most}, the largest of analysis.torques_Nm"

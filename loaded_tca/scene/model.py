@@ -428,6 +428,10 @@ class Scene(InNotebooks, WithStandards, ABC):
         """Depths of the notches that grinding leaves at the roots of both gears, and roundings of the tools [mm]."""
         return ()
 
+    def missing_shifts(self) -> Sequence[str]:
+        """Return sentences on teeth that look as if a profile shift of theirs were not given."""
+        return ()
+
     @abstractmethod
     def interferences(self) -> Sequence[str]:
         """Return sentences on what jams the whole gears, which the contact of one flank of each does not notice.

@@ -26,7 +26,8 @@ from loaded_tca.scene.pitch import REVOLUTION_RULES
 from loaded_tca.scene.rows import Label, fixed
 from loaded_tca.scene.section import Rule, refusal, rule, subsection
 from loaded_tca.scene.sections import SLOPE_um
-from loaded_tca.scene.thickness import as_measured
+from loaded_tca.scene.thickness import as_measured, odd_thickness
+from loaded_tca.scene.tools import odd_tip
 
 LENGTH_mm = above_zero(100000.0)
 
@@ -278,7 +279,7 @@ class RackScene(CylindricalScene):
         length = () if rack.length is None else (("length of the rack [pitches]", fixed(rack.length / rack.pitch, 4)),)
         return [
             ("distance of pinion's axis and reference line [mm]", fixed(self.distance, 4)),
-            ("transverse pressure angle alpha_t [deg]", fixed(math.degrees(mesh.working_pressure_angle), 4)),
+            ("transverse pressure angle alpha_t [deg]", fixed(math.degrees(pinion.transverse_pressure_angle), 4)),
             ("base helix angle beta_b [deg]", fixed(abs(math.degrees(pinion.base_helix_angle)), 4)),
             *backlash_rows(mesh),
             ("transverse contact ratio eps_alpha", fixed(mesh.transverse_contact_ratio, 4)),
@@ -309,6 +310,12 @@ class RackScene(CylindricalScene):
         radius = self.mesh().pinion.reference_radius
         forces = (fixed(torque / radius, 1) for torque in torques)
         return [*super().force_rows(torques), ("force along the rack, without friction [N]", *forces)]
+
+    def missing_shifts(self) -> Sequence[str]:
+        """Return a sentence where the teeth of the pinion look as if their profile shift were not given."""
+        follows = self.geometry.distance_mm is not None
+        thick = odd_thickness(self._gear, self.pinion.profile_shift, follows=follows)
+        return thick or (odd_tip(self._gear, self.pinion) if self.pinion.profile_shift is None and not follows else [])
 
     def interferences(self) -> Sequence[str]:
         """Return how pinion and rack interfere at their distance, its error included."""

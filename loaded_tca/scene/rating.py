@@ -53,16 +53,17 @@ def _of_table(
 
 
 def _no_hardness(
-    material: str | None, kind: str | None, quality: str, stress: float | None, *hardness: float | None
+    key: str, value: str | None, other: str | None, quality: str, stress: float | None, *hardness: float | None
 ) -> str | None:
-    """What is wrong where the stresses of a material depend on a hardness that is not given."""
-    if stress is not None or any(one is not None for one in hardness) or (material is None) == (kind is None):
+    """What is wrong where the stresses of a material, or of a kind, depend on a hardness that is not given."""
+    if stress is not None or any(one is not None for one in hardness) or value is None or other is not None:
         return None
     try:
+        material, kind = (value, None) if key == "material" else (None, value)
         _of_table(material, kind, quality, None, None)
     except InputError:
         keys = ", ".join(HARDNESS)
-        return f'found "{material or kind}", whose stresses depend on the hardness; give one of {keys}'
+        return f'found "{value}", whose stresses depend on the hardness; give one of {keys}'
     return None
 
 
@@ -151,7 +152,10 @@ class StrengthSection(Section):
             lambda flank, root: (flank is None) == (root is None),
             "found one of sigma_H_lim_MPa and sigma_F_lim_MPa; give both, or none for the stresses of ISO 6336-5",
         ),
-        Rule(("material", "kind", "quality", "sigma_H_lim_MPa", *HARDNESS), _no_hardness),
+        *(
+            Rule((*names, "quality", "sigma_H_lim_MPa", *HARDNESS), partial(_no_hardness, names[0]))
+            for names in (("material", "kind"), ("kind", "material"))
+        ),
         *(
             Rule((f"hardness_{scale}", "material", "kind", "quality", "sigma_H_lim_MPa"), partial(_off_line, scale))
             for scale in SCALES

@@ -287,13 +287,17 @@ def _unknown(
     known = entries(section)
     unknown = [name for name in value if name not in known]
     homes = {name: place + home for name, home in _homes(section).items()} if unknown else {}
+    usual: dict[str, str] = {}
     if any(name.lower().endswith(INCH_WORDS) for name in unknown):
-        usual = {key: in_inches(key, entry) for key, entry in keys_of(section).items()}
-        homes |= {writing.name: place + writing.name for writing in usual.values() if writing}
+        writings = {key: in_inches(key, entry) for key, entry in keys_of(section).items()}
+        usual = {key: writing.name for key, writing in writings.items() if writing}
+        homes |= {name: place + name for name in usual.values()}
     elsewhere = _homes(whole) if unknown and whole is not None else {}
     for name in unknown[:MOST_UNKNOWN_KEYS]:
         near = nearest(name, homes) or ""
         spelled = key_meant_by(name, homes) or key_meant_by(name, elsewhere)
+        if name.lower().endswith(INCH_WORDS):
+            spelled = usual.get(spelled or "", spelled)
         own = set(name.split("_")) <= set(near.split("_"))  # but for a word: "shaft_angle_error_deg"
         meant = (not own and elsewhere.get(name)) or homes.get(spelled or near) or elsewhere.get(spelled or "")
         allowed = shorten(", ".join(known), LONGEST_LIST, placeholder=" ...")

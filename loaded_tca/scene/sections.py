@@ -347,11 +347,17 @@ class Operation(Section):
 class LubricantSection(Section):
     """[lubricant]: the oil, and what tribology is to take of it; the analysis takes nothing of it."""
 
-    viscosity_40_mm2_s: float = key(Number(1.0, 1e5, above=True), "kinematic viscosity at 40 °C")
-    viscosity_100_mm2_s: float = key(Number(1.0, 1e5, above=True), "kinematic viscosity at 100 °C")
+    viscosity_40_mm2_s: float = key(
+        Number(1.0, 1e5, above=True), "kinematic viscosity at 40 °C, which is all that ratings take"
+    )
+    viscosity_100_mm2_s: float | None = key(
+        Number(1.0, 1e5, above=True), "kinematic viscosity at 100 °C", None, "tribology has no oil"
+    )
     density_15_kg_m3: float = key(Number(600.0, 1400.0), "density at 15 °C", 890.0)
     base: str = key(Choice(BASES), "kind of the base oil", "mineral")
-    oil_temperature_C: float = key(TEMPERATURE_C, "temperature of the oil that comes to the mesh")
+    oil_temperature_C: float | None = key(
+        TEMPERATURE_C, "temperature of the oil that comes to the mesh", None, "as `viscosity_100_mm2_s`"
+    )
     pressure_viscosity_38_mm2_N: float | None = key(
         above_zero(1.0), "pressure-viscosity coefficient at 38 °C", None, "by the base"
     )
@@ -380,7 +386,7 @@ class LubricantSection(Section):
             ("viscosity_100_mm2_s", "viscosity_40_mm2_s"),
             lambda hot, cold: (
                 None
-                if hot < cold
+                if hot is None or hot < cold
                 else f"found {plain(hot, 6)}; allowed below viscosity_40_mm2_s = {plain(cold, 6)}: oils thin with heat"
             ),
         ),

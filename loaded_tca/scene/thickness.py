@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
+from itertools import combinations
 from typing import TYPE_CHECKING, ClassVar, TypeVar
 
+import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS
 from loaded_tca.errors import InputError
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh, RingGear
-from loaded_tca.gears.tooth_measures import allowance_of_balls, allowance_of_span
+from loaded_tca.gears.tooth_measures import (
+    allowance_of_balls,
+    allowance_of_pins,
+    allowance_of_span,
+    allowance_of_thickness,
+)
 from loaded_tca.plain import plain
 from loaded_tca.scene.blank import BlankGearSection
 from loaded_tca.scene.keys import Whole, key
@@ -21,11 +29,21 @@ if TYPE_CHECKING:
     from loaded_tca.scene.model import Row
 
 
-def one_thickness(allowance: float | None, span: float | None, balls: float | None) -> str | None:
-    """What is wrong where more than one key gives the tooth thickness."""
-    keys = {"thickness_allowance_um": allowance, "span_measurement_mm": span, "ball_measurement_mm": balls}
-    given = [f"{name} = {plain(value, 6)}" for name, value in keys.items() if value is not None]
-    return f"found {' beside '.join(given)}; give one of them" if len(given) > 1 else None
+def _one_of(other: str, value: float | None, beside: float | None) -> str | None:
+    """What is wrong where two keys give the tooth thickness."""
+    if value is None or beside is None:
+        return None
+    return f"found {plain(value, 6)} beside {other} = {plain(beside, 6)}; give one of them"
+
+
+THICKNESS = (
+    "thickness_allowance_um",
+    "normal_tooth_thickness_mm",
+    "span_measurement_mm",
+    "ball_measurement_mm",
+    "pin_measurement_mm",
+)
+"""Keys of which one gives the tooth thickness."""
 
 
 def needs(key: str, other: str, *, back: bool = False) -> Rule:
@@ -52,6 +70,12 @@ class MeasuredSection(BlankGearSection):
         None,
         "0",
     )
+    normal_tooth_thickness_mm: float | None = key(
+        DIAMETER_mm,
+        "or the thickness s_n itself in the normal section at the reference circle, an arc",
+        None,
+        "m_n (pi/2 + 2 x tan(alpha_n))",
+    )
     span_measurement_mm: float | None = key(
         DIAMETER_mm,
         "or span W_k of these teeth; of a ring, whose teeth must be straight, between the flanks over k spaces",
@@ -63,17 +87,26 @@ class MeasuredSection(BlankGearSection):
     )
     ball_measurement_mm: float | None = key(
         DIAMETER_mm,
-        "or measure M_dK over two balls, between them in a ring; the same over pins if teeth are straight",
+        "or measure M_dK over two balls, between them in a ring",
         None,
         "not measured",
     )
     ball_diameter_mm: float | None = key(DIAMETER_mm, "diameter D_M of the balls", None, "of `ball_measurement_mm`")
+    pin_measurement_mm: float | None = key(
+        DIAMETER_mm,
+        "or measure M_dR over two pins, between them in a ring, whose teeth must be straight; other than M_dK for an "
+        "odd number of helical teeth",
+        None,
+        "not measured",
+    )
+    pin_diameter_mm: float | None = key(DIAMETER_mm, "diameter D_M of the pins", None, "of `pin_measurement_mm`")
 
     rules: ClassVar[tuple[Rule, ...]] = (
         *BlankGearSection.rules,
-        Rule(("thickness_allowance_um", "span_measurement_mm", "ball_measurement_mm"), one_thickness),
+        *(Rule(pair, partial(_one_of, pair[1])) for pair in combinations(THICKNESS, 2)),
         needs("span_teeth", "span_measurement_mm"),
         needs("ball_diameter_mm", "ball_measurement_mm", back=True),
+        needs("pin_diameter_mm", "pin_measurement_mm", back=True),
     )
 
 
@@ -81,7 +114,9 @@ GearType = TypeVar("GearType", CylindricalGear, RingGear)
 
 
 def as_measured(gear: GearType, own: MeasuredSection) -> GearType:
-    """Gear with the thickness of its teeth that a span or balls tell, if they do."""
+    """Gear with the thickness of its teeth that is given, or that a span, balls or pins tell, if they do."""
+    if own.normal_tooth_thickness_mm is not None:
+        return replace(gear, thickness_allowance=allowance_of_thickness(gear, own.normal_tooth_thickness_mm))
     if own.span_measurement_mm is not None:
         teeth = own.span_teeth or gear.span_teeth
         measured = replace(gear, thickness_allowance=allowance_of_span(gear, own.span_measurement_mm, teeth))
@@ -92,10 +127,67 @@ def as_measured(gear: GearType, own: MeasuredSection) -> GearType:
         measured = replace(gear, thickness_allowance=allowance)
         measured.ball_measurement(own.ball_diameter_mm)
         return measured
+    if own.pin_measurement_mm is not None and own.pin_diameter_mm is not None:
+        allowance = allowance_of_pins(gear, own.pin_measurement_mm, own.pin_diameter_mm)
+        measured = replace(gear, thickness_allowance=allowance)
+        measured.pin_measurement(own.pin_diameter_mm)
+        return measured
     return gear
 
 
-def thickness_rows(mesh: CylindricalMesh | InternalMesh, balls: Sequence[float | None]) -> list[Row]:
+MOST_THICKER, MOST_THINNER = 0.01, 0.1
+"""Allowances over the module above and below which a question is asked. x of a drawing is rounded to 0.01 at the most,
+0.004 modules of thickness; backlash takes some hundredths of a module."""
+
+
+MOST_BACKLASH = 0.2
+"""Normal backlash over the module above which a question is asked: gears have some hundredths, and at a pressure angle
+of 20 degrees so much is a sum of profile shifts that is off by 0.3."""
+
+
+def odd_backlash(mesh: CylindricalMesh | InternalMesh) -> list[str]:
+    """A sentence on gears with a backlash that looks like profile shifts that are not given."""
+    if mesh.normal_backlash <= MOST_BACKLASH * mesh.pinion.normal_module:
+        return []
+    return [
+        kinds.WIDE_BACKLASH.sentence(
+            backlash=mesh.normal_backlash,
+            modules=mesh.normal_backlash / mesh.pinion.normal_module,
+            distance=mesh.working_centre_distance,
+            given=mesh.pinion.profile_shift + mesh.wheel.profile_shift,
+            wanted=mesh.profile_shift_sum_without_backlash,
+        )
+    ]
+
+
+def odd_thickness(gear: CylindricalGear | RingGear, shift: float | None, *, follows: bool) -> list[str]:
+    """A sentence on a gear with an allowance that looks like a profile shift that is not given.
+
+    Parameters
+    ----------
+    gear : CylindricalGear or RingGear
+    shift : float, optional
+        Profile shift of the scene.
+    follows : bool
+        Whether one that is not given follows from the centre distance; else thin teeth are asked about, too.
+    """
+    allowance, module = gear.thickness_allowance, gear.normal_module
+    absent = shift is None and not follows
+    if allowance <= MOST_THICKER * module and not (absent and allowance < -MOST_THINNER * module):
+        return []
+    by_default = "which follows from the centre distance" if follows else "the default, since none is given"
+    return [
+        kinds.THICKNESS.sentence(
+            gear=gear.name,
+            allowance=1e3 * allowance,
+            shift=gear.profile_shift,
+            source=by_default if shift is None else "which is given",
+            generating=gear.generating_profile_shift,
+        )
+    ]
+
+
+def thickness_rows(mesh: CylindricalMesh | InternalMesh, own: tuple[MeasuredSection, MeasuredSection]) -> list[Row]:
     """Tooth thickness of both gears and how it is measured; "-" of a gear without a span, and below it why."""
     gears: tuple[CylindricalGear, CylindricalGear | RingGear] = mesh.pinion, mesh.wheel
     internal = isinstance(mesh, InternalMesh)
@@ -112,10 +204,23 @@ def thickness_rows(mesh: CylindricalMesh | InternalMesh, balls: Sequence[float |
             ("thickness allowance A_sn [um]", *(fixed(1e3 * gear.thickness_allowance, 1) for gear in gears)),
             ("generating profile shift x_E", *(fixed(gear.generating_profile_shift, 4) for gear in gears)),
         ]
-    if any(balls):
-        measures = (fixed(g.ball_measurement(size), 4) if size else "-" for g, size in zip(gears, balls, strict=True))
-        rows.append((f"measure over {'(between) ' if internal else ''}balls M_dK [mm]", *measures))
+    diameters = [section.ball_diameter_mm or section.pin_diameter_mm for section in own]
+    if any(diameters):
+        over = f"over {'(between) ' if internal else ''}"
+        for label, measures in (
+            (f"measure {over}balls M_dK [mm]", (gear.ball_measurement for gear in gears)),
+            (f"measure {over}pins M_dR [mm]", (gear.pin_measurement for gear in gears)),
+        ):
+            rows.append((label, *map(_measure, measures, diameters)))
     return rows
+
+
+def _measure(measurement: Callable[[float], float], diameter: float | None) -> Cell | str:
+    """Measure over balls or pins of a diameter; "-" of a gear that has none."""
+    try:
+        return "-" if diameter is None else fixed(measurement(diameter), 4)
+    except InputError:
+        return "-"
 
 
 def _span(gear: CylindricalGear | RingGear) -> tuple[str, str]:

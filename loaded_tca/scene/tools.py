@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import inf, radians
 from typing import TYPE_CHECKING, Any, ClassVar
 
+import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh, RingGear
 from loaded_tca.gears.chamfer import chamfered_land
@@ -178,6 +179,19 @@ def shortening(geometry: Geometry, teeth: tuple[int, int], shifts: tuple[float, 
     if geometry.tip_shortening != "computed":
         return {}
     return {"tip_alteration_coefficient": tip_alteration(geometry, teeth, shifts)}
+
+
+LONGEST_TIP = 0.1
+"""Tip alteration over the module above which a question is asked, of a gear without a profile shift of its own: tip
+diameters are rounded, and have tolerances, of less."""
+
+
+def odd_tip(gear: CylindricalGear | RingGear, own: CutSection) -> list[str]:
+    """A sentence on a gear whose tip diameter looks like that of a profile shift that is not given."""
+    alteration = gear.tip_alteration / gear.normal_module
+    if own.tip_diameter_mm is None or alteration <= LONGEST_TIP:
+        return []
+    return [kinds.LONG_TIP.sentence(gear=gear.name, alteration=alteration, shift=gear.profile_shift + alteration)]
 
 
 def rack_rows(mesh: CylindricalMesh | InternalMesh) -> list[Row]:

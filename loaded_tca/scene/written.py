@@ -51,6 +51,8 @@ class Writing:
         By which values are multiplied, of units of one quantity; None where the one is a function of the other.
     given : bool
         Whether the table has the key; else it is how the table would write it.
+    value : float or None
+        The number that the table has.
     """
 
     key: str
@@ -59,6 +61,12 @@ class Writing:
     from_key: Convert
     factor: float | None = None
     given: bool = True
+    value: float | None = None
+
+    def text(self, number: str) -> str:
+        """A number of a refusal as the table writes it: its own value digit by digit, another one with six digits."""
+        own = self.value is not None and number == plain(self.to_key(self.value), 6)
+        return plain(self.value if own and self.value is not None else self.from_key(float(number)), 6)
 
     def path(self, of_key: str) -> str:
         """Path of the name, where that of the key is known."""
@@ -73,8 +81,8 @@ class Writing:
         """Value of the section; numbers in lists one by one, what is no number as it is."""
         if isinstance(value, list | tuple):
             return tuple(self.converted(each) for each in value)
-        is_number = isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
-        return self.to_key(float(value)) if is_number else value
+        number = _number(value)
+        return value if number is None else self.to_key(number)
 
     def kind(self, kind: Kind) -> Kind:
         """Kind of the value in the unit of the table."""
@@ -207,7 +215,11 @@ class WrittenTable:
 def by_keys(table: Mapping[str, Any], keys: Mapping[str, Key], equivalents: Equivalents, section: str) -> WrittenTable:
     """Return a table by the keys of a section; ``section`` is its name in questions."""
     names = [name for name, value in table.items() if name not in keys and value is not None and isinstance(name, str)]
-    writings = {name: writing for name in names if (writing := writing_of(name, keys, equivalents, table))}
+    writings = {
+        name: replace(writing, value=_number(table[name]))
+        for name in names
+        if (writing := writing_of(name, keys, equivalents, table))
+    }
     if not writings:
         return WrittenTable(table)
     by_key: dict[str, Writing] = {}
@@ -234,6 +246,12 @@ def by_keys(table: Mapping[str, Any], keys: Mapping[str, Key], equivalents: Equi
     others = {key: usual for key, entry in absent.items() if (usual := in_inches(key, entry))}
     values |= {key: table[writing.name] for key, writing in by_key.items()}
     return WrittenTable(values, others | by_key, tuple(problems))
+
+
+def _number(value: Any) -> float | None:
+    """A finite number as a float; None of anything else."""
+    is_number = isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+    return float(value) if is_number else None
 
 
 def _is_in_inches(name: str, keys: Mapping[str, Key], equivalents: Equivalents) -> bool | None:
@@ -273,10 +291,9 @@ def as_written(sentence: str, head: str, writings: Mapping[str, Writing]) -> str
     def named(match: re.Match[str]) -> str:
         writing = writings[match["key"]]
         name = writing.path(match["key"])
-        return name if match["value"] is None else f"{name} = {plain(writing.from_key(float(match['value'])), 6)}"
+        return name if match["value"] is None else f"{name} = {writing.text(match['value'])}"
 
     if head in writings:
-        back = writings[head].from_key
-        sentence = OF_THE_KEY.sub(lambda match: f"{plain(back(float(match[0])), 6)}", sentence)
+        sentence = OF_THE_KEY.sub(lambda match: writings[head].text(match[0]), sentence)
     names = "|".join(re.escape(name) for name in sorted(writings, key=len, reverse=True))
     return re.sub(rf"(?<![\w.])(?P<key>{names})\b(?: = (?P<value>{NUMBER}))?", named, sentence) if names else sentence

@@ -349,8 +349,10 @@ def _of_scene(scene: Scene, name: str) -> float | None:
     return getattr(scene.lubricant, name) if scene.lubricant else None
 
 
-def lubricant_of(section: LubricantSection) -> Lubricant:
-    """The oil of a scene."""
+def lubricant_of(section: LubricantSection) -> Lubricant | None:
+    """The oil of a scene; None where the section has no more of it than ratings take."""
+    if section.viscosity_100_mm2_s is None or section.oil_temperature_C is None:
+        return None
     return Lubricant(
         viscosity_40=section.viscosity_40_mm2_s,
         viscosity_100=section.viscosity_100_mm2_s,

@@ -12,7 +12,7 @@ NEEDS = {
     "load_sharing": "needs the load sharing of tooth pairs; set analysis.load_sharing = true and run the scene",
     "positions": "a mean over a pitch takes five positions or more; raise analysis.positions and run the scene",
     "speed": "needs pinion_speed_rpm, or operation.pinion_speed_rpm in the scene",
-    "lubricant": "needs lubricant, or [lubricant] in the scene",
+    "lubricant": "needs lubricant, or [lubricant] with viscosity_100_mm2_s and oil_temperature_C in the scene",
     "roughness": "needs roughness_um, or pinion.roughness_Ra_um and wheel.roughness_Ra_um in the scene",
     "friction": 'needs friction: "local", "Xu-Kahraman" or a number; ISO/TS 6336-22 covers cylindrical gears only',
     "bulk": "needs bulk_temperature_C: the standard computes it for cylindrical gears only",

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca import InputError, read_scene
+from loaded_tca import InputError, parse_scene, read_scene
 from loaded_tca.flank_maps import measured_modifications
 from loaded_tca.flanks import MeasuredDeviations, MeasuredPoints
 from loaded_tca.flanks.topography import parse_topography
@@ -80,6 +80,28 @@ def test_lines_have_no_twist_and_noise_has_standard_deviations():
     assert made.keys == tuple(amounts)
     assert_allclose(made.measured, [*amounts.values()], atol=0.4)  # of 15 and 21 points; seeded
     assert "form deviations left: rms 0.2" in made.summary()
+
+
+def test_lines_of_a_scene_and_of_a_file_have_the_same_standard_deviations(tmp_path):
+    """A comment says nothing of how a flank was measured: its columns do."""
+    scene = with_amounts(SCENES["helical"], dict.fromkeys(PUT_IN, 0.0))
+    rho, z, delta = removed(scene, {"lead_crowning_um": 9.0}, points=(12, 12))
+    rows = [f"profile,{rho[i, 5]},{z[i, 5]},{-delta[i, 5] / 25.4e-6 + (-1) ** i}" for i in range(rho.shape[0])]
+    rows += [f"helix,{rho[5, j]},{z[5, j]},{-delta[5, j] / 25.4e-6 - (-1) ** j}" for j in range(rho.shape[1])]
+    text = "\n".join(["line,radius_mm,axial_mm,deviation_uin", *rows])
+    (tmp_path / "lines.csv").write_text(text, encoding="utf-8")
+    by_file = measured_modifications(scene, "wheel", parse_topography(text))
+    kept = scene.with_changes({"wheel.flank": {"form": "measured", "file": str(tmp_path / "lines.csv")}})
+    assert kept.wheel.flank.measurement.two_lines
+    again = measured_modifications(parse_scene(kept.to_toml()), "wheel")
+    assert again.keys == by_file.keys
+    assert "twist_um" not in again.keys
+    assert_allclose(again.deviation, by_file.deviation, rtol=1e-6)  # of 12 digits that a scene keeps
+    assert_allclose(by_file.measured[2], 9.0, atol=0.1)  # um; beside a waviness of 25 nm
+    grid = [f"{rho[i, j]},{z[i, j]},{-1e3 * delta[i, j]}" for j in range(rho.shape[1]) for i in range(rho.shape[0])]
+    size = f"# points = {rho.shape[0]} x {rho.shape[1]}"
+    points = parse_topography("\n".join(["# lines = 10", size, "radius_mm,axial_mm,deviation_um", *grid]))
+    assert "twist_um" in measured_modifications(scene, "wheel", points).keys
 
 
 def test_flank_of_the_scene_is_taken_and_others_are_refused():

@@ -159,7 +159,7 @@ def test_what_python_alone_takes_for_a_number_is_none(cell):
 def test_unknown_unit_of_a_known_column_is_told_as_such():
     """The nearest name is that in metres, a million times as much."""
     (problem,) = problems_of("radius_mm,axial_mm,deviation_UM\n1,2,3")
-    units = "deviation_um, deviation_mm, deviation_m, deviation_in"
+    units = "deviation_um, deviation_mm, deviation_m, deviation_in, deviation_uin"
     assert problem == f"line 1, column 3: the unit of deviation is unknown; allowed {units}"
 
 
@@ -180,7 +180,7 @@ def test_shape_of_a_grid_has_digits_that_people_of_all_scripts_read():
 
 def test_columns_that_are_unknown_without_unit_or_double_are_refused_all_at_once():
     assert problems_of("radius_mm,axial,deviation_um,deviatoin_um,axial_mm,axial_um\n1,2,3,4,5,6") == (
-        "column 'axial' has no unit; allowed axial_um, axial_mm, axial_m, axial_in",
+        "column 'axial' has no unit; allowed axial_um, axial_mm, axial_m, axial_in, axial_uin",
         "line 1, column 4: the name of the column is unknown; did you mean 'deviation_um'?",
         "column axial appears twice",
     )

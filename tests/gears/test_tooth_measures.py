@@ -1,6 +1,7 @@
 """Tooth thickness by allowance, span and balls: planes and balls laid against the flanks, and what the rack leaves."""
 
 from dataclasses import replace
+from itertools import product
 from math import atan2, cos, hypot, pi, radians, sin, sqrt, tan
 
 import numpy as np
@@ -11,8 +12,8 @@ from numpy.testing import assert_allclose
 from scipy.optimize import minimize_scalar
 
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.gears.tooth_measures import allowance_of_balls, allowance_of_span
+from loaded_tca.gears import CylindricalGear, CylindricalMesh, RingGear
+from loaded_tca.gears.tooth_measures import allowance_of_balls, allowance_of_pins, allowance_of_span
 from tests.refusals import refused_calls
 
 ROUNDING = 1e-10  # of involutes that are inverted, and of lengths of 100 mm of which an allowance of 0.1 mm is left
@@ -98,6 +99,53 @@ def test_balls_of_helical_teeth_touch_the_screw_of_their_flanks():
     assert_allclose(least.fun, 0.5 * size, rtol=1e-7)
 
 
+@pytest.mark.parametrize("teeth", [24, 25])
+def test_pins_of_helical_teeth_touch_the_screw_of_their_flanks(teeth):
+    """Least distance of the flank, a screw surface, from the axis of a pin along the helix at its middle."""
+    one, size = gear(teeth, radians(20.0), thickness_allowance=-0.06), 3.6
+    centre = 0.5 * (one.pin_measurement(size) - size)
+    lead = tan(one.helix_angle) / one.reference_radius
+    slope = centre * lead  # tangent of the helix angle there
+    along = np.array([0.0, slope, 1.0]) / hypot(slope, 1.0)
+
+    def distance(radius, height):
+        angle = pi / teeth - 0.5 * one.tooth_thickness_at(radius) / radius + lead * height
+        to_point = np.array([radius * cos(angle) - centre, radius * sin(angle), height])
+        return float(np.linalg.norm(np.cross(to_point, along)))
+
+    def over_heights(radius):
+        return minimize_scalar(lambda height: distance(radius, height), bounds=(-4.0, 4.0), method="bounded").fun
+
+    least = minimize_scalar(over_heights, bounds=(one.form_radius, one.tip_radius), method="bounded")
+    assert_allclose(least.fun, 0.5 * size, rtol=1e-7)
+
+
+@pytest.mark.parametrize(("teeth", "helix"), [(24, 0.0), (25, 0.0), (24, 0.35), (25, 0.35)])
+def test_measure_over_pins_is_the_widest_of_parallel_planes_about_them(teeth, helix):
+    """Pins lie anywhere along the helices of two spaces, the heights of which are tried one by one."""
+    one, size = gear(teeth, helix), 3.6
+    balls_apart = one.ball_measurement(size) - size
+    centre = 0.5 * balls_apart / (1.0 if teeth % 2 == 0 else cos(0.5 * pi / teeth))
+    heights = np.linspace(-0.5 * one.face_width, 0.5 * one.face_width, 2001)
+    turns = np.tan(helix) / one.reference_radius * heights
+    widest = 0.0
+    for space, upper in product((teeth // 2, teeth - teeth // 2), (turns[0], 0.0, turns[-1])):
+        opposite = 2.0 * pi * space / teeth + turns - upper
+        widest = max(widest, float((2.0 * centre * np.abs(np.sin(0.5 * opposite))).max()))
+    assert_allclose(one.pin_measurement(size), widest + size, rtol=1e-6)  # the steps of the heights
+
+
+def test_pins_over_47_helical_teeth_measure_more_than_balls():
+    """DIN 3960: M_dK = d_K cos(90 deg/z) + D_M, M_dR = d_K + D_M; so 8.6637 and 8.6684 in at 6 NDP, x_E 0.0879."""
+    inch = 25.4
+    one = CylindricalGear(
+        47, inch / 6.0, 1.65 * inch, helix_angle=radians(18.0), profile_shift=0.0879, tip_diameter=8.603 * inch
+    )
+    digits = 0.00005 * inch
+    assert_allclose(one.ball_measurement(0.288 * inch), 8.6637 * inch, atol=digits)
+    assert_allclose(one.pin_measurement(0.288 * inch), 8.6684 * inch, atol=digits)
+
+
 @given(st.integers(12, 120), st.floats(-0.5, 0.5), st.floats(0.0, 0.6), st.floats(-0.2, 0.02), st.floats(1.65, 1.9))
 def test_span_and_balls_give_back_the_allowance(teeth, helix, shift, allowance, size):
     try:
@@ -109,6 +157,10 @@ def test_span_and_balls_give_back_the_allowance(teeth, helix, shift, allowance, 
     assert_allclose(allowance_of_span(nominal, span, one.span_teeth), allowance, atol=1e-10)
     assert_allclose(allowance_of_balls(nominal, balls, 2.0 * size), allowance, atol=1e-9)
     assert_allclose(allowance_of_balls(one, balls, 2.0 * size), allowance, atol=1e-9)
+    if helix == 0.0 or teeth % 2 == 0 or abs(sin(helix)) > 0.01:  # opposite pins are on this face
+        pins = one.pin_measurement(2.0 * size)
+        assert pins >= balls
+        assert_allclose(allowance_of_pins(one, pins, 2.0 * size), allowance, atol=1e-9)
 
 
 @pytest.mark.parametrize(("teeth", "helix", "shift"), [(12, 0.0, 0.3), (17, 0.2, 0.0), (60, 0.35, 0.5), (200, 0.0, 0)])
@@ -189,4 +241,16 @@ test_tooth_measures_refuse = refused_calls(
     (lambda: allowance_of_balls(gear(), 70.0, 3.5), r"^gear: ball_measurement: 70 mm .* mm thicker"),
     (lambda: allowance_of_balls(gear(), 49.0, 3.5), "puts the balls inside the base circle, diameter 46.98"),
     (lambda: allowance_of_balls(gear(), 49.0, -1.0), "^gear: ball_diameter: -1.0 mm"),
+    (lambda: gear().pin_measurement(20.0), "^gear: pin_diameter: a pin of 20 mm touches no flank"),
+    (lambda: gear().pin_measurement(0.5), "^gear: pin_diameter: a pin of 0.5 mm falls between the flanks"),
+    (lambda: allowance_of_pins(gear(), 70.0, 3.5), "^gear: pin_measurement: 70 mm over pins of 3.5 mm makes the teeth"),
+    (lambda: allowance_of_pins(gear(), 49.0, 3.5), "^gear: pin_measurement: .* puts the pins inside the base circle"),
+    (
+        lambda: gear(helix=0.05).pin_measurement(3.6),
+        "^gear: pin_measurement: .* half an axial pitch apart along the face, 62.86 mm, and the face width is 40 mm",
+    ),
+    (
+        lambda: RingGear(-60, 3.0, 20.0, helix_angle=0.2).pin_measurement(5.0),
+        "pin_measurement: pins between the helical teeth of a ring, which are hollow, touch at their ends",
+    ),
 )

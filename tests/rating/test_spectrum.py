@@ -53,6 +53,21 @@ def test_one_bin_lasts_as_long_as_its_torque_alone():
     assert_allclose(one.flank_safety[0], single.flank_safety[1], rtol=ROUNDING)
 
 
+def test_one_bin_above_the_solved_torque_by_rounding_is_rated_by_the_power_of_the_torque():
+    """sigma_H ~ sqrt(T), sigma_F ~ T: safeties on slopes of S-N curves change by rounding, 5e-6, and no more."""
+    rounded, exact = under(bins((200.001, 50.0))), under(bins((200.0, 50.0)))
+    assert_allclose(rounded.flank_safety[0] / exact.flank_safety[0], 1.0 - 0.5 * 5e-6, rtol=1e-6)
+    assert_allclose(rounded.root_safety[0] / exact.root_safety[0], 1.0 - 5e-6, rtol=1e-6)
+
+
+def test_rating_takes_the_viscosity_at_40_degrees_alone():
+    """Of the oil ISO 6336-2 has nothing else."""
+    whole = solved(**GIVEN).rating()
+    oil = {"viscosity_40_mm2_s": solved(**GIVEN).scene.lubricant.viscosity_40_mm2_s}
+    part = solved(**GIVEN | {"lubricant": oil}).rating()
+    assert_array_equal(part.flank_safety, whole.flank_safety)
+
+
 def test_one_bin_at_the_knee_has_the_life_of_the_knee():
     curve, stress = alone().endurances["flank"][0].curve, float(alone().sigma_H[1, 0])
     # Z_NT = 1 at 5e7 load cycles of case-hardened flanks, ISO 6336-2; sigma_H times the safety is that strength

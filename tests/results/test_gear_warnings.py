@@ -114,7 +114,8 @@ def test_mounting_without_a_mesh_is_refused(error, words):
 
 
 def test_tip_below_the_form_circle_of_the_mate_is_warned_of():
-    sentence, clearance = sentences(spur(**PLAIN, **{"wheel.tip_diameter_mm": 178.0, "pinion.teeth": 20}))
+    longer = {"wheel.tip_diameter_mm": 178.0, "wheel.profile_shift": 0.0}  # which is meant so
+    sentence, clearance = sentences(spur(**PLAIN, **longer, **{"pinion.teeth": 20}))
     assert "within 0.25 mm of the root of the pinion" in clearance
     assert sentence.startswith("fillet interference: the tip of the wheel reaches below the form circle of the pinion")
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from math import cos, pi, radians, sin, sqrt, tan
+from math import atan, cos, degrees, pi, radians, sin, sqrt, tan
 from pathlib import Path
 from typing import Any
 
@@ -124,6 +124,24 @@ def test_profile_shift_follows_the_distance() -> None:
     mesh = SPUR.with_changes({"pair.distance_mm": 30.9}).mesh()
     assert mesh.pinion.profile_shift == pytest.approx(0.3, rel=1e-9)
     assert mesh.backlash == pytest.approx(0.06, abs=1e-6)  # of 1e-5 of the shift, the limit
+
+
+def test_check_has_the_pressure_angle_of_the_basic_rack_at_any_distance() -> None:
+    """tan(alpha_t) = tan(alpha_n)/cos(beta), which no distance and no profile shift change."""
+    for helix, angle in ((0.0, "20.0000"), (15.0, f"{degrees(atan(tan(radians(20.0)) / cos(radians(15.0)))):.4f}")):
+        scene = SPUR.with_changes(
+            {"pair.distance_mm": None, "pinion.profile_shift": 0.4, "pair.helix_angle_deg": helix}
+        )
+        rows = {name: cells for name, *cells in scene.geometry_rows()}
+        assert rows["transverse pressure angle alpha_t [deg]"] == [angle]
+
+
+def test_thickness_of_the_pinion_is_asked_about_where_it_looks_like_a_shift() -> None:
+    """Of module 3: a hundredth of it is 30 um."""
+    assert SPUR.missing_shifts() == []
+    (sentence,) = SPUR.with_changes({"pinion.thickness_allowance_um": 200.0}).missing_shifts()
+    shift = 0.2 / (2.0 * 3.0 * tan(radians(20.0)))
+    assert f"with profile_shift = {shift:.4f} the same teeth have no allowance" in sentence
 
 
 def test_reliefs_of_the_rack_start_below_its_tip_line() -> None:

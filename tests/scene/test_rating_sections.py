@@ -37,6 +37,7 @@ REFUSED = [
     ({}, "pinion.strength.material: missing, or found beside kind"),
     ({"material": "18CrNiMo7-6", "kind": "Eh"}, "pinion.strength.material: missing, or found beside kind"),
     ({"material": "42CrMo4", "proof_stress_MPa": 800.0}, 'material: found "42CrMo4", whose stresses depend on'),
+    ({"kind": "Eh"}, 'strength.kind: found "Eh", whose stresses depend on the hardness; give one of hardness_HV'),
     ({"material": "18CrNiMo7-6", "hardness_HRC": 40.0}, "hardness_HRC: found 392 HV; allowed for kind 'Eh'"),
     ({"material": "18CrNiMo7-6", "hardness_HV": 700.0, "hardness_HRC": 60.0}, "found beside another scale"),
     ({"material": "18CrNiMo7-6", "sigma_H_lim_MPa": 1500.0}, "found one of sigma_H_lim_MPa and sigma_F_lim_MPa"),

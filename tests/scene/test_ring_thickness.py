@@ -89,7 +89,7 @@ def test_complete_teeth_and_form_factors_of_a_ring_follow_its_allowance(thinned)
 test_thickness_of_rings_refuses = refused_calls(
     (
         lambda: scene(wheel__thickness_allowance_um=-40.0, wheel__span_measurement_mm=70.0),
-        "^wheel.thickness_allowance_um: found thickness_allowance_um = -40 beside span_measurement_mm = 70; give one",
+        "^wheel.thickness_allowance_um: found -40 beside span_measurement_mm = 70; give one",
     ),
     (lambda: scene(wheel__ball_diameter_mm=5.0), "^wheel.ball_diameter_mm: found 5; it needs ball_measurement_mm"),
     (

@@ -128,6 +128,13 @@ def test_chamfer_ends_flank_and_active_profile():
         ("pinion.z", "pinion.teeth"),
         ("pair.alfn", "pair.pressure_angle_deg"),
         ("wheel.MdK", "wheel.ball_measurement_mm"),
+        ("wheel.MdR", "wheel.pin_measurement_mm"),
+        ("pinion.root_diameter_in", "pinion.dedendum_coefficient"),
+        ("pinion.tooth_thickness_in", "pinion.normal_tooth_thickness_in"),
+        ("wheel.MOP_in", "wheel.pin_measurement_in"),
+        ("wheel.MOP_mm", "wheel.pin_measurement_mm"),
+        ("wheel.measurement_over_pins_in", "wheel.pin_measurement_in"),
+        ("wheel.measurement_over_balls", "wheel.ball_measurement_mm"),
         ("pinion.tip_shortening", "pair.tip_shortening"),
     ],
 )

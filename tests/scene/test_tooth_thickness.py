@@ -1,6 +1,6 @@
-"""Tooth thickness and tips of scenes as engineers give them: by allowance, span, balls or tip alteration."""
+"""Tooth thickness and tips of scenes as engineers give them: by allowance, span, balls, pins or tip alteration."""
 
-from math import asin, cos, radians, sin
+from math import asin, cos, pi, radians, sin, tan
 
 import pytest
 from numpy.testing import assert_allclose
@@ -23,14 +23,17 @@ def thinned():
     return scene(pinion__thickness_allowance_um=1e3 * THIN)
 
 
-def test_allowance_span_and_balls_make_the_same_gear():
+def test_allowance_span_balls_and_pins_make_the_same_gear():
     by_allowance = thinned().mesh().pinion
     assert_allclose(by_allowance.thickness_allowance, THIN)
     span, balls = by_allowance.span_measurement(), by_allowance.ball_measurement(5.25)
     by_span = scene(pinion__span_measurement_mm=span)
     by_span_of_six = scene(pinion__span_measurement_mm=by_allowance.span_measurement(6), pinion__span_teeth=6)
     by_balls = scene(pinion__ball_measurement_mm=balls, pinion__ball_diameter_mm=5.25)
-    for other in (by_span, by_span_of_six, by_balls):
+    pins = by_allowance.pin_measurement(5.25)
+    by_pins = scene(pinion__pin_measurement_mm=pins, pinion__pin_diameter_mm=5.25)
+    by_thickness = scene(pinion__normal_tooth_thickness_mm=3.0 * 0.5 * pi + THIN)  # m_n pi/2, without a shift
+    for other in (by_span, by_span_of_six, by_balls, by_pins, by_thickness):
         assert_allclose(other.mesh().pinion.thickness_allowance, THIN, atol=1e-9)
         assert_allclose(other.mesh().pinion.root_radius, by_allowance.root_radius, rtol=1e-10)
         assert parse_scene(other.to_toml()) == other
@@ -61,6 +64,9 @@ def test_check_tells_thickness_backlash_and_tips():
     assert rows["normal backlash j_bn [mm]"] == [f"{mesh.normal_backlash:.4f}"]
     assert rows["measure over balls M_dK [mm]"] == ["-", "185.0000"]
     assert rows["span W_k over k teeth [mm]"][0] == f"{mesh.pinion.span_measurement():.4f} (5)"
+    assert rows["measure over pins M_dR [mm]"][0] == "-"
+    assert rows["measure over pins M_dR [mm]"][1] == f"{mesh.wheel.pin_measurement(5.5):.4f}"
+    assert float(rows["measure over pins M_dR [mm]"][1]) > 185.05  # 57 helical teeth: d_K (1 - cos(90 deg/57)) more
     plain = {name for name, *_ in scene().geometry_rows()}
     assert "thickness allowance A_sn [um]" not in plain
     assert "span W_k over k teeth [mm]" in plain
@@ -82,6 +88,86 @@ def test_check_says_why_a_gear_has_no_span():
     assert "touches no flank: it would be at diameter" in low["  none of the pinion"][0]
 
 
+def test_check_has_no_measure_over_pins_of_a_face_too_narrow_for_them():
+    """57 teeth of 15 degrees: pins stand opposite half an axial pitch apart, pi m_n/(2 sin(beta)) = 18.2 mm."""
+    narrow = scene(wheel__face_width_mm=18.0, wheel__ball_measurement_mm=185.0, wheel__ball_diameter_mm=5.5)
+    rows = {name: cells for name, *cells in narrow.geometry_rows()}
+    assert rows["measure over balls M_dK [mm]"] == ["-", "185.0000"]
+    assert rows["measure over pins M_dR [mm]"] == ["-", "-"]
+
+
+def test_thickness_far_from_the_profile_shift_is_asked_about_with_the_shift_that_fits():
+    """x = 0.2 and A_sn = -30 um, measured, on a drawing that has no x: s_n = m_n (pi/2 + 2 x_E tan(alpha_n))."""
+    drawn = scene(pinion__profile_shift=0.2, pinion__thickness_allowance_um=-30.0)
+    assert drawn.missing_shifts() == []
+    span = drawn.mesh().pinion.span_measurement(5)
+    measured = scene(pinion__profile_shift=None, pinion__span_measurement_mm=span, pinion__span_teeth=5)
+    generating = 0.2 - 0.03 / (2.0 * 3.0 * tan(radians(20.0)))
+    (sentence,) = measured.missing_shifts()
+    assert f"of the pinion: the allowance A_sn is {2e3 * 3.0 * generating * tan(radians(20.0)):+.4g} um" in sentence
+    assert "profile_shift = 0.0000, the default, since none is given" in sentence
+    assert f"with profile_shift = {generating:.4f} the same teeth have no allowance" in sentence
+    fitting = measured.with_changes({"pinion.profile_shift": generating})
+    assert fitting.missing_shifts() == []
+    assert abs(fitting.mesh().pinion.thickness_allowance) < 1e-9
+    assert_allclose(fitting.mesh().pinion.root_radius, drawn.mesh().pinion.root_radius, rtol=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("shift", "allowance", "distance", "words"),
+    [
+        (0.0, 29.0, None, None),
+        (0.0, 31.0, None, "which is given"),
+        (None, 31.0, None, "the default"),
+        (None, -299.0, None, None),
+        (None, -301.0, None, "the default"),
+        (0.0, -301.0, None, None),
+        (None, 31.0, 142.0, "which follows from the centre distance"),
+        (None, -301.0, 142.0, None),
+    ],
+)
+def test_thickness_is_asked_about_from_a_hundredth_of_the_module_on_or_a_tenth_below(shift, allowance, distance, words):
+    """Of module 3; teeth that are thinner by more than a tenth are no question where x is given, or follows."""
+    other = None if distance is None else 0.1
+    one = scene(
+        pair__centre_distance_mm=distance,
+        pinion__profile_shift=other,
+        wheel__profile_shift=shift,
+        wheel__thickness_allowance_um=allowance,
+    )
+    found = one.missing_shifts()
+    assert len(found) == (words is not None)
+    assert all(words in sentence for sentence in found)
+
+
+def test_tip_diameter_of_a_long_addendum_asks_for_the_profile_shift():
+    """d_a = d + 2 m_n (1 + x): a tip of x = 0.15 beside x = 0 is 0.15 modules too long."""
+    tip = 2.0 * scene(pinion__profile_shift=0.15).mesh().pinion.tip_radius
+    drawn = scene(pinion__tip_diameter_mm=tip)
+    (sentence,) = drawn.missing_shifts()
+    assert sentence.startswith("tip of the pinion: tip_diameter_mm is that of a tip alteration of +0.15 modules")
+    assert "with profile_shift = 0.1500 the tip has no alteration" in sentence
+    assert drawn.with_changes({"pinion.profile_shift": 0.15}).missing_shifts() == []
+    assert drawn.with_changes({"pinion.profile_shift": 0.0}).missing_shifts() == []  # which is said, and meant
+    assert scene(pinion__tip_diameter_mm=tip - 0.4).missing_shifts() == []  # 0.2/3 modules less: below a tenth
+    assert scene(pinion__tip_diameter_mm=tip - 2.0).missing_shifts() == []  # a shortened tip
+
+
+def test_backlash_that_looks_like_missing_profile_shifts_is_asked_about():
+    """Far apart by little more, da: j_bn = 2 da sin(alpha_wt), within a hundredth while the angle hardly changes."""
+    close = scene().mesh()
+    limit = 0.2 * 3.0 / (2.0 * sin(close.working_pressure_angle))
+    for part, asked in ((0.9, False), (1.1, True)):
+        far = scene(pair__centre_distance_mm=close.working_centre_distance + part * limit)
+        sentences = far.missing_shifts()
+        assert len(sentences) == asked
+        for sentence in sentences:
+            assert f"wide backlash: {far.mesh().normal_backlash:.3g} mm along the normal" in sentence
+            assert "the sum of the profile shifts is 0.0000" in sentence
+            assert f"a sum of {far.mesh().profile_shift_sum_without_backlash:.4f} leaves no backlash" in sentence
+        assert far.with_changes({"pinion.profile_shift": 0.0}).missing_shifts() == []  # the other follows
+
+
 def test_tip_alteration_is_told_and_shortens():
     short = scene(pinion__tip_alteration_coefficient=-0.1)
     assert_allclose(scene().mesh().pinion.tip_radius - short.mesh().pinion.tip_radius, 0.3)
@@ -101,11 +187,29 @@ def test_backlash_of_allowances_is_used_up_by_an_error_of_the_centre_distance():
 test_thickness_keys_refuse = refused_calls(
     (
         lambda: scene(pinion__thickness_allowance_um=-40.0, pinion__span_measurement_mm=41.4),
-        "^pinion.thickness_allowance_um: found thickness_allowance_um = -40 beside span_measurement_mm = 41.4",
+        "^pinion.thickness_allowance_um: found -40 beside span_measurement_mm = 41.4; give one of them",
     ),
     (
         lambda: scene(wheel__span_measurement_mm=60.2, wheel__ball_measurement_mm=185.0, wheel__ball_diameter_mm=5.5),
-        "^wheel.thickness_allowance_um: found span_measurement_mm = 60.2 beside ball_measurement_mm = 185; give one",
+        "^wheel.span_measurement_mm: found 60.2 beside ball_measurement_mm = 185; give one",
+    ),
+    (
+        lambda: scene(
+            wheel__pin_measurement_mm=185.1,
+            wheel__pin_diameter_mm=5.5,
+            wheel__ball_measurement_mm=185.0,
+            wheel__ball_diameter_mm=5.5,
+        ),
+        "^wheel.ball_measurement_mm: found 185 beside pin_measurement_mm = 185.1; give one",
+    ),
+    (lambda: scene(pinion__pin_diameter_mm=5.0), "^pinion.pin_diameter_mm: found 5; it needs pin_measurement_mm"),
+    (
+        lambda: scene(pinion__pin_measurement_mm=113.0, pinion__pin_diameter_mm=9.0).mesh(),
+        "^pinion: pin_measurement_mm: 113 mm over pins of 9 mm",
+    ),
+    (
+        lambda: scene(pinion__normal_tooth_thickness_mm=0.5).mesh(),
+        "^pinion: normal_tooth_thickness_mm: 0.5 mm makes the teeth 4.212 mm thinner than nominal, where it is 4.71239",
     ),
     (lambda: scene(pinion__span_teeth=5), "^pinion.span_teeth: found 5; it needs span_measurement_mm"),
     (lambda: scene(pinion__ball_diameter_mm=5.0), "^pinion.ball_diameter_mm: found 5; it needs ball_measurement_mm"),

@@ -247,6 +247,11 @@ test_what_is_wrong_in_inches_is_told_in_inches = refusals(
         "pinion.face_width_in: found 1.25 beside face_width_mm = 31.75; give one of them",
     ),
     (
+        "face_width_in = 1.25",
+        "face_width_in = 1.25\nspan_measurement_in = 1.2345\nball_measurement_in = 4.31301\nball_diameter_in = 0.288",
+        "pinion.span_measurement_in: found 1.2345 beside ball_measurement_in = 4.31301; give one of them",
+    ),
+    (
         "tip_relief_start_in = 3.15\n",
         "",
         "pinion.modifications.tip_relief_start_in: missing or 0; tip_relief_in = 0.0006 needs a value above 0, or "

@@ -198,6 +198,19 @@ def test_a_missing_input_is_named(given, name, words):
         getattr(known(shared("mesh_cycle_spur"), **given), name)
 
 
+@pytest.mark.parametrize("missing", ["viscosity_100_mm2_s", "oil_temperature_C"])
+def test_an_oil_for_ratings_alone_is_none_for_tribology(missing):
+    """Z_L of ISO 6336-2 takes the viscosity at 40 C, viscosities at other temperatures take two."""
+    result = shared("mesh_cycle_spur")
+    oil = {"viscosity_40_mm2_s": 220.0, "viscosity_100_mm2_s": 19.0, "oil_temperature_C": 80.0}
+    whole = replace(result, scene=result.scene.with_changes({"lubricant": oil}))
+    assert np.nanmin(known(whole, lubricant=None).film_ratio) > 0.0
+    del oil[missing]
+    part = replace(result, scene=result.scene.with_changes({"lubricant": oil}))
+    with pytest.raises(NotAskedError, match=r"needs lubricant, or \[lubricant\] with viscosity_100_mm2_s and oil_temp"):
+        _ = known(part, lubricant=None).film_ratio
+
+
 def test_bevel_gears_need_a_friction_and_a_bulk_temperature():
     result = shared("mesh_cycle_bevel")
     with pytest.raises(NotAskedError, match="needs friction"):
