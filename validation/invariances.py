@@ -10,7 +10,7 @@ largest one of the scene.
 import math
 import tempfile
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -308,15 +308,26 @@ def pitch_later(subject: Subject) -> Off:
 def torque_in_a_list(subject: Subject) -> Off:
     """A torque among others gives what it gives alone.
 
-    Halves that are held are analysed under other torques then, between which what they carry lies.
+    Halves that are held are analysed under other torques then, between which what they carry lies: of small torques one
+    half may carry all, of large ones a part.
     """
-    result = subject.result
+    result, scene = subject.result, subject.scene
     torque = 1e-3 * float(result.torque[-1])
-    several = [0.4 * torque, torque] if len(result.torque) == 1 else [torque]
-    other = analysed(subject.scene.with_changes({"analysis.torques_Nm": several}))
-    scene = subject.scene
-    between = isinstance(scene, DoubleHelicalScene) and not scene.floats_freely
-    return difference(result, other, SOLVED_ANEW if between else SAME_TORQUE, (-1, slice(None)), (-1, slice(None)))
+    last, first = (-1, slice(None)), (0, slice(None))
+    if not isinstance(scene, DoubleHelicalScene) or scene.floats_freely:
+        several = [0.4 * torque, torque] if len(result.torque) == 1 else [torque]
+        return difference(result, _under(scene, several), SAME_TORQUE, last, last)
+    other, small = _under(scene, [0.1 * torque, torque]), _under(scene, [0.1 * torque])
+    of_large, of_small = (
+        difference(result, other, SOLVED_ANEW, last, last),
+        difference(small, other, SOLVED_ANEW, first, first),
+    )
+    return {name: max(off, of_small[name]) for name, off in of_large.items()}
+
+
+def _under(scene: Scene, torques: Sequence[float]) -> MeshCycle:
+    """Result of a scene under torques [N m]."""
+    return analysed(scene.with_changes({"analysis.torques_Nm": [*torques]}))
 
 
 def positions_among_others(subject: Subject) -> Off:
