@@ -309,14 +309,6 @@ BACKLASH = Kind(
     "a smaller sum of profile shifts, or a larger centre distance: `check` shows the sum at which the backlash is "
     "zero; for bevel gears thinner teeth",
 )
-LARGE_BACKLASH = Kind(
-    "large backlash: tooth spaces are wider than the teeth of the mating gear by more than {most:g} modules, as if the "
-    "profile shifts for this centre distance were missing",
-    "the contact of one flank of each gear does not depend on the backlash, but its flanks do depend on the profile "
-    "shifts: with a `centre_distance_mm` and no profile shift, all shifts are 0",
-    "the profile shifts of the drawing: `check` shows the sum at which the backlash is zero; or a thickness allowance "
-    "nearer to 0",
-)
 NO_TOOTH = Kind(
     "{gear}: {fault}; the flank in contact is analysed nevertheless",
     "half-spaces have a pressure even without a tooth behind the flank; a real gear would not have this tooth",

@@ -245,9 +245,6 @@ ROUNDING = 1e-4
 RIGID = 0.2
 """Overlap of teeth over the module to which none give way: both flanks of a tooth would have to by a tenth of a module,
 with a stress at their roots of a fiftieth of Young's modulus, whatever the material."""
-LOOSE = 0.4
-"""Backlash over the module beyond which a warning says so: a quarter of the thickness of a tooth. ISO/TR 10064-2 has at
-least 0.04 to 0.1 from module 1 on, (2/3)(0.06 mm + 0.0005 a + 0.03 m_n)/m_n."""
 BOTH_WAYS = ("pinion", "wheel"), ("wheel", "pinion")
 AT_MID_FACE = "at mid-face without mounting errors"
 """Place of the room of gears on meeting axes."""
@@ -276,7 +273,7 @@ class Room(NamedTuple):
 
 
 def interferences(room: Room, module: float, place: str, *, nominal: bool = False) -> Sequence[str]:
-    """Sentences on what jams gears that turn all the same where their teeth give way, or on too much room.
+    """Sentences on what jams gears that turn all the same where their teeth give way.
 
     Parameters
     ----------
@@ -305,11 +302,9 @@ def interferences(room: Room, module: float, place: str, *, nominal: bool = Fals
 
 
 def _what_jams(room: Room, module: float, nominal: bool) -> Iterator[tuple[str, str]]:
-    """What interferes or is loose, and by how much."""
+    """What interferes, and by how much."""
     if room.backlash < -ROUNDING * module and not nominal:
         yield kinds.BACKLASH.sentence(), f"{-room.backlash:.4f} mm"
-    if room.backlash > LOOSE * module:
-        yield kinds.LARGE_BACKLASH.sentence(most=LOOSE), f"{room.backlash:.4f} mm"
     for (name, mating), length, rest in zip(BOTH_WAYS, room.below_form, room.in_fillet, strict=True):
         if rest is not None:
             if rest < -ROUNDING * module:

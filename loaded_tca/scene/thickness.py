@@ -142,7 +142,8 @@ MOST_THICKER, MOST_THINNER = 0.01, 0.1
 
 MOST_BACKLASH = 0.2
 """Normal backlash over the module above which a question is asked: gears have some hundredths, and at a pressure angle
-of 20 degrees so much is a sum of profile shifts that is off by 0.3."""
+of 20 degrees so much is a sum of profile shifts that is off by 0.3. ISO/TR 10064-2 has at least 0.04 to 0.1 from module
+1 on, (2/3)(0.06 mm + 0.0005 a + 0.03 m_n)/m_n."""
 
 
 def odd_backlash(mesh: CylindricalMesh | InternalMesh) -> list[str]:

@@ -38,14 +38,14 @@ def test_shifts_that_follow_leave_no_backlash(shifts):
         assert_allclose(mesh.backlash_at(mesh.working_centre_distance), 0.0, atol=1e-6)
 
 
-def test_without_any_shift_all_are_nought_and_a_large_backlash_is_told():
+def test_without_any_shift_all_are_nought_and_a_wide_backlash_is_told():
     whole = stage()
     module = whole.geometry.normal_module_mm
     assert whole.profile_shifts == (0.0, 0.0, 0.0)
-    assert whole.sun_scene.interferences() == []  # 0.29 mm of 1.5
+    assert whole.sun_scene.missing_shifts() == []  # 0.29 mm of 1.5
     apart = whole.with_changes({"pair.centre_distance_mm": 39.91 + 0.7 * module})
-    (sentence,) = apart.sun_scene.interferences()
-    assert sentence.startswith("large backlash")
+    (sentence,) = apart.sun_scene.missing_shifts()
+    assert sentence.startswith("wide backlash")
 
 
 def test_given_shifts_keep_their_backlash():
