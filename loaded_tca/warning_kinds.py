@@ -149,6 +149,22 @@ SLOPES_BY_GRIDS = Kind(
     " peak and of harmonics are off by about as much",
     "more `cells`, or a smaller `accuracy`; compare two grids",
 )
+SHARES_BY_GRIDS = Kind(
+    "derivatives of load shares depend on the grid by up to {size:.2g} per {unit}, where the largest is {largest:.2g} "
+    "per {unit} ({key}; {count} of {keys} keys)",
+    "edges, arcs and relief starts run through cells. So the derivatives differ by this size with the place of the "
+    "grids, whether these stay or move with the contact points; on small cells they would not",
+    "more `cells`, or a smaller `accuracy`; compare two grids",
+)
+PEAKS_ALIKE = Kind(
+    "two places of a contact have nearly the same pressure, {lacking:.2%} apart, so that its peak pressure has a kink: "
+    "the derivative is {slope:.3g} MPa per {unit} at one place and {other:.3g} MPa per {unit} at the other ({key}; "
+    "{count} of {keys} keys)",
+    "the peak pressure is that of the place with the largest pressure. Beyond the change of a key by which another "
+    "place gets the largest pressure, the peak pressure follows that other place: where both ends of a contact have "
+    "the same pressure, a tilt in either direction raises the peak pressure",
+    "analyse values on both sides of the present one; do not use the spread to first order",
+)
 NEARLY_PLASTIC = Kind(
     "the cap on the pressure leaves fewer than {cells} cells of a contact below it: derivatives of load shares are "
     "off by 10 to 30%, those of peak to peak by as much as their own size",
