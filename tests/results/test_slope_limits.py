@@ -11,6 +11,7 @@ from loaded_tca import warning_kinds as kinds
 from loaded_tca.errors import noted_accuracy_warnings
 from loaded_tca.results.slope_limits import usual_tolerance, warn_of_alike_peaks, warn_of_share_grids
 from loaded_tca.warning_kinds import kind_of
+from tests.samples.results import result
 from validation.invariances import COARSE, Subject, analysed
 
 IN_PLANE, CROWNING = "mounting.in_plane_deg", "pinion.modifications.lead_crowning_um"
@@ -69,6 +70,7 @@ def shares_by(key, cells):
     return shares, slopes.load_share_by_grids[0, 0, :2, 0], kinds_of(sentences), scene
 
 
+@pytest.mark.thorough
 def test_what_derivatives_of_shares_are_off_by_on_coarse_grids_is_told_and_falls_with_the_cells():
     """Beside differences of analyses over 0.04 deg, which steps of a half of that change by 0.3 %."""
     (coarse, by_grids, told, scene), step = shares_by(IN_PLANE, 48), 0.02
@@ -105,8 +107,7 @@ def test_shares_follow_a_crowning_that_moves_contacts_of_bending_teeth_apart():
 
 def test_a_contact_with_the_same_pressure_at_both_ends_has_a_kink_by_a_tilt_and_none_by_a_crowning():
     """A straight pinion on a wider rack: in a mirror one end is the other one, and the tilt its negative."""
-    result = Subject.of(10244).result
-    slopes = result.sensitivities([IN_PLANE, CROWNING])
+    slopes = Subject.of(10244).result.sensitivities([IN_PLANE, CROWNING])
     with noted_accuracy_warnings(given=False) as sentences:
         tilted, crowned = np.moveaxis(slopes.peak_pressure[0], -1, 0)
     (told,) = [sentence for sentence in sentences if kind_of(sentence) is kinds.PEAKS_ALIKE]
@@ -146,6 +147,19 @@ def test_shares_by_grids_are_told_beside_the_largest_derivative(slope, by_grids,
     with noted_accuracy_warnings(given=False) as sentences:
         warn_of_share_grids([IN_PLANE], shares, slopes, np.full(slopes.shape, by_grids), stacklevel=1)
     assert kinds_of(sentences) == [kinds.SHARES_BY_GRIDS] * count
+
+
+@pytest.mark.parametrize(("part", "count"), [(0.06, 1), (0.04, 0)])
+def test_what_grids_change_of_shares_is_told_where_these_are_read(part, count, monkeypatch):
+    slopes = result("mesh_cycle_helical", positions=2).sensitivities([IN_PLANE])
+    with noted_accuracy_warnings(given=False):
+        largest = np.nanmax(np.abs(slopes.load_share))
+    vars(slopes).pop("load_share")
+    by_grids = np.full((*slopes.result.load_share.shape, 1), part * largest)
+    monkeypatch.setitem(vars(slopes), "load_share_by_grids", by_grids)
+    with noted_accuracy_warnings(given=False) as sentences:
+        assert np.isfinite(slopes.load_share).any()
+    assert kinds_of(sentences).count(kinds.SHARES_BY_GRIDS) == count
 
 
 @pytest.mark.parametrize(
