@@ -428,8 +428,9 @@ def _add_moved_lines(
             gaps[[*steps]] += edge_deflection_growth(pair, separations, forces, [*steps.values()])[:, slices]
     for key, change in enumerate(changes):
         if bending is not None and not change.of_modifications:
+            moves = motions[key].any(axis=-1) | (change.below is not change.above)
             low, high = (
-                _bent(tangents, bending.mounted(gears) if isinstance(bending, SumOfParts) else bending, there)
+                _bent(tangents, bending.mounted(gears) if isinstance(bending, SumOfParts) else bending, there, moves)
                 for gears, there in _on_both_sides(change, separations, motions[key])
             )
             gaps[key] += ((high - low) / change.difference)[slices]
@@ -461,20 +462,27 @@ def _moved_slices(pair: GearPair, change: PairChange, separations: Sequence[Sepa
     return MovedSlices(low, high, change.difference)
 
 
-def _bent(tangents: Tangents, bending: BendingModel, separations: Sequence[Separation]) -> Array:
-    """Bending of the slices of all grids, in one row [mm], under the forces as they are, on other grids."""
+def _bent(tangents: Tangents, bending: BendingModel, separations: Sequence[Separation], moves: Mask) -> Array:
+    """Bending of the slices of all grids, in one row [mm], under the forces as they are, on other grids.
+
+    As far as it has a part in grids that move (grids,).
+    """
     grids, whole = tangents.grids, [grid.slice_force for grid in tangents.grids]
     loaded = [np.flatnonzero(force) for force in whole]
     forces = [force[own] for force, own in zip(whole, loaded, strict=True)]
     lines = [
         (grid.number, LoadedSlices.of(one, own)) for grid, one, own in zip(grids, separations, loaded, strict=True)
     ]
-    deflections = [bending.within(*line) @ force for line, force in zip(lines, forces, strict=True)]
+    deflections = [
+        bending.within(*line) @ force if is_moved else np.zeros(force.size)
+        for line, force, is_moved in zip(lines, forces, moves.tolist(), strict=True)
+    ]
     for state in np.split(np.arange(len(grids)), np.flatnonzero(np.diff(tangents.state)) + 1):
         for i, j in combinations(state.tolist(), 2):
-            between = bending.between(lines[i], lines[j])
-            deflections[i] += between @ forces[j]
-            deflections[j] += between.T @ forces[i]
+            if moves[i] or moves[j]:
+                between = bending.between(lines[i], lines[j])
+                deflections[i] += between @ forces[j]
+                deflections[j] += between.T @ forces[i]
     for force, own, bent in zip(whole, loaded, deflections, strict=True):
         force[own] = bent
     return np.concatenate(whole)
