@@ -150,9 +150,26 @@ SLOPES_BY_GRIDS = Kind(
     "derivatives of the transmission error depend on the grid by up to {size:.2g} um per {unit}, more than 5% of "
     "their range over the positions ({key}; {count} of {keys} keys)",
     "edges, arcs and relief starts run through cells. The derivatives depend by this size on where the grids lie, both"
-    " for grids that stay in place and for grids that move with the contact points; on small cells they would not. "
-    "Derivatives of peak to peak and of harmonics are off by about as much",
+    " for grids that stay in place and for grids that move with the contact points; smaller cells make this size "
+    "smaller. Derivatives of peak to peak and of harmonics are off by about as much",
     "more `cells`, or a smaller `accuracy`; compare two grids",
+)
+SHARES_BY_GRIDS = Kind(
+    "derivatives of load shares depend on the grid by up to {size:.2g} per {unit}, where the largest is {largest:.2g} "
+    "per {unit} ({key}; {count} of {keys} keys)",
+    "edges, arcs and relief starts run through cells. The derivatives depend by this size on where the grids lie, both"
+    " for grids that stay in place and for grids that move with the contact points; smaller cells make this size "
+    "smaller",
+    "more `cells`, or a smaller `accuracy`; compare two grids",
+)
+PEAKS_ALIKE = Kind(
+    "two places of a contact have nearly the same pressure, {lacking:.2%} apart, so that its peak pressure has a kink: "
+    "the derivative is {slope:.3g} MPa per {unit} at one place and {other:.3g} MPa per {unit} at the other ({key}; "
+    "{count} of {keys} keys)",
+    "the peak pressure follows the place with the largest pressure. Where a change of a key gives another place the "
+    "largest pressure, the peak pressure follows that place: if both ends of a contact have the same pressure, a tilt "
+    "in either direction raises the peak pressure",
+    "analyse values on both sides of the present one; do not use the spread to first order",
 )
 NEARLY_PLASTIC = Kind(
     "the cap on the pressure leaves fewer than {cells} cells of a contact below it: derivatives of load shares are "

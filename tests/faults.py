@@ -2148,8 +2148,8 @@ FAULTS = (
     Fault(
         "derivatives: peak pressures by modifications are those of contacts that stay on their grids",
         "results/sensitivities.py",
-        "left[:, self.tangents.grid, way] * motions.gaps[way]",
-        "0.0 * motions.gaps[way]",
+        "more = self._of_motions.moved(self.tangents, left)",
+        "more = self._of_motions.moved(self.tangents, 0.0 * left)",
         "results/test_sensitivities.py::"
         "test_peak_pressures_follow_contacts_that_a_profile_crowning_moves_over_their_grids",
     ),
@@ -3896,6 +3896,33 @@ FAULTS = (
         "math.degrees(pinion.transverse_pressure_angle)",
         "math.degrees(mesh.working_pressure_angle)",
         "scene/test_rack_scene.py::test_check_has_the_pressure_angle_of_the_basic_rack_at_any_distance",
+        "derivatives of shares: grids of a position that follow their contacts move as if all moved alike",
+        "results/gap_growth.py",
+        "gaps += tangents.spread(padded[:, grids, way]) * by_place",
+        "gaps += motions[:, tangents.grid, way] * by_place",
+        "results/test_slope_limits.py::test_shares_follow_a_crowning_that_moves_contacts_of_bending_teeth_apart",
+    ),
+    Fault(
+        "derivatives of shares: what they depend on the grids is not told",
+        "results/sensitivities.py",
+        "slopes, self.load_share_by_grids, stacklevel=3)",
+        "slopes, 0.0 * self.load_share_by_grids, stacklevel=3)",
+        "results/test_slope_limits.py::test_what_grids_change_of_shares_is_told_where_these_are_read",
+    ),
+    Fault(
+        "derivatives of slice pressures: the middle of a slice stays where its forces change",
+        "results/slice_pressure.py",
+        "self.steepness * self.slices.middle_slopes(self.place[1])",
+        "0.0 * self.slices.middle_slopes(self.place[1])",
+        "results/test_figure_slopes.py::test_slice_pressure_where_a_contact_ends_changes_as_its_own",
+    ),
+    Fault(
+        "derivatives of peak pressures: another place with the same pressure is not told",
+        "results/sensitivities.py",
+        "if any(peak is not None for peak in others):",
+        "if False:",
+        "results/test_slope_limits.py::"
+        "test_a_contact_with_the_same_pressure_at_both_ends_has_a_kink_by_a_tilt_and_none_by_a_crowning",
     ),
 )
 

@@ -120,6 +120,8 @@ class SliceLoads:
         The same on the slices that carry load: where the averaged line load may be largest.
     line_load : (2 ny + 2,) array [N/mm]
         There.
+    arms : (nx, ny) array [mm]
+        From the middles of the slices to their cells under pressure.
     """
 
     def __init__(self, module: float, separation: Separation, pressure: Array) -> None:
@@ -135,6 +137,9 @@ class SliceLoads:
         self._longest = min(AVERAGED_OVER * module, self.ends[1] - self.ends[0])
         self.places, self.line_load = averaged_line_load(self.force, borders, self.length)
         self._middles = separation.y[carrying], middles
+        arms, self._carrying = np.zeros(pressure.shape), carrying
+        arms[:, carrying] = np.where(pressure[:, carrying] > 0.0, separation.x[:, None] - middles, 0.0)
+        self.arms = arms
         self.x, self.y, _ = self.at(self.places)
         self.step = dy
 
@@ -142,6 +147,13 @@ class SliceLoads:
         """Where the contact lies at places along it, x and y [mm] on the slices that carry load, and its line load."""
         y = np.minimum(np.maximum(places, self.ends[0]), self.ends[1])
         return np.interp(y, *self._middles), y, np.interp(places, self.places, self.line_load)
+
+    def middle_slopes(self, place: float) -> Array:
+        """Derivative (nx, ny) of where the contact lies across at a place along it by the forces of cells [mm/N]."""
+        at, by_force = min(max(place, self.ends[0]), self.ends[1]), np.zeros(self.force.size)
+        parts = np.array([np.interp(at, self._middles[0], unit) for unit in np.eye(self._carrying.size)])
+        by_force[self._carrying] = parts / self.force[self._carrying]
+        return np.asarray(self.arms * by_force)
 
     @property
     def length_slopes(self) -> Array:

@@ -186,9 +186,17 @@ class Tangents:
         torques : (..., states) array [N mm]
             Changes of the torques beside them.
         """
+        weights, by_torque = self.functional_weights(slopes)
+        return np.asarray(self.summed(gaps * weights) + by_torque * torques)
+
+    def functional_weights(self, slopes: Array) -> tuple[Array, Array]:
+        """Derivatives of a number J(f) of each state by the gaps (n,) [per mm] and by the torques (states,) [per N mm].
+
+        ``slopes`` (n,): dJ/df at the active cells, per N.
+        """
         adjoint = self.solved(slopes, transposed=True)
         by_torque = self.summed(self.wheel_levers * adjoint) / self.stiffness
-        return np.asarray(self.summed(gaps * (self.spread(by_torque) * self.weights - adjoint)) + by_torque * torques)
+        return self.spread(by_torque) * self.weights - adjoint, by_torque
 
     def displaced(self, forces: Array) -> Array:
         """K f (n,) [mm] of forces (n,) [N]."""

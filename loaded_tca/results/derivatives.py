@@ -151,6 +151,7 @@ class JoinedSensitivities(Sensitivities):
     transmission_error_kinks = _by_torque("transmission_error_kinks")
     transmission_error_by_grids = _by_torque("transmission_error_by_grids")
     load_share = _by_torque("load_share")
+    load_share_by_grids = _by_torque("load_share_by_grids")
     on_cut_slices = _by_torque("on_cut_slices")
     at_corners = _by_torque("at_corners")
     across_relief_starts = _by_torque("across_relief_starts")

@@ -87,12 +87,12 @@ def peak_pressure_slopes(
         Of a smooth contact, and of inner cells, that of the top of the quadratic, the cells that it is fitted to held;
         of the largest cell where none fits, where the pair has a cap on the pressure or the contact reaches the end of
         its grid: as the peak itself. Of the others that of their largest slice pressure, the place along the contact
-        and the curvature there held: p dq/2q. Zero at the cap.
+        held: p dq/2q + p dk/2k. Zero at the cap.
     """
     of_contacts = []
     for (_, separation, pressure), peak in zip(contacts, peaks, strict=True):
         if isinstance(peak, SlicePeak):
-            of_contacts.append(np.broadcast_to(peak.slopes, pressure.shape).copy())
+            of_contacts.append(peak.slopes)
         else:
             slopes = smooth_peak_slopes(pressure if peak is None else peak.cells, pair.max_pressure)
             of_contacts.append(slopes / (separation.spacing[0] * separation.spacing[1]))

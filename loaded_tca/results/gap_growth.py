@@ -22,6 +22,7 @@ from loaded_tca.edges.free import MovedSlices, edge_deflection_growth
 from loaded_tca.loaded.force_lines import LoadedSlices
 from loaded_tca.pairs.gear_pair import cylindrical_basis
 from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.results.slice_pressure import JUMP
 from loaded_tca.separation import Separation
 from loaded_tca.separation.gap_change import OF_GRIDS, MovedContacts, contact_changes
 from loaded_tca.separation.normal_gap import NormalGap
@@ -30,7 +31,7 @@ from loaded_tca.separation.pair_change import PairChange
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from loaded_tca.arrays import Array, Mask
+    from loaded_tca.arrays import Array, Indices, Mask
     from loaded_tca.loaded.loaded_grid import LoadedGrid
     from loaded_tca.loaded.sensitivity import Tangents
     from loaded_tca.pairs.gear_pair import GearPair
@@ -271,29 +272,45 @@ PART_OF_CELL = 1e-2
 
 @dataclass(frozen=True, eq=False)
 class MotionGrowth:
-    """Growth of what the loaded states balance as all their grids move along x or y, forces held.
+    """Growth of what the loaded states balance as their grids move along x or y, forces held.
 
     Any grid is as good as another, so that in the limit of small cells no figure changes by it; what figures change
     tells how far derivatives depend on the motions of the grids.
 
     Attributes
     ----------
-    gaps : (2, n) array [1]
-        At the active cells, with what the forces as they are displace more.
+    gaps : (2, places, n) array [1]
+        At the active cells, with what the forces as they are displace more, for a motion of one grid: that at a place
+        among the grids of its state. Bodies and teeth displace the cells of the other grids, too.
     lever_torques : (2, grids) array [N]
-        Growth of the torque of each pair by what its cells at the cap carry more.
+        Growth of the torque of each pair by what its cells at the cap carry more as its own grid moves.
+    grids : (places, states) int array
+        The grid at each place of a state; after the last one where there is none.
     """
 
     gaps: Array
     lever_torques: Array
+    grids: Indices
 
-    def rotation_rates(self, tangents: Tangents) -> Array:
-        """Growth of the rotation of each state as one of its grids moves (2, grids) [rad/mm].
+    def rates(self, tangents: Tangents, by_gaps: Array, by_torque: Array) -> Array:
+        """Growth of a number of each state as one of its grids moves (2, grids) [per mm].
 
-        What a pair bends under the forces of others counts as if their grids moved alike.
+        ``by_gaps`` (n,), ``by_torque`` (states,): its derivatives by the gaps of the cells and by the torques.
         """
-        by_grid = np.add.reduceat(self.gaps * tangents.weights, np.concatenate([[0], tangents.ends[:-1]]), axis=1)
-        return np.asarray((by_grid - self.lever_torques) / tangents.stiffness[tangents.state])
+        by_place = tangents.summed(self.gaps * by_gaps)
+        rates = np.zeros((2, tangents.state.size + 1))
+        rates[:, self.grids] = by_place
+        return np.asarray(rates[:, :-1] - by_torque[tangents.state] * self.lever_torques)
+
+    def moved(self, tangents: Tangents, motions: Array) -> tuple[Array, Array]:
+        """Growth of gaps (keys, n) and lever torques (keys, grids) with motions (keys, grids, 2) of the grids."""
+        lever_torques = (np.moveaxis(motions, -1, 0) * self.lever_torques[:, None]).sum(axis=0)
+        padded = np.pad(motions, ((0, 0), (0, 1), (0, 0)))
+        gaps = np.zeros((len(motions), tangents.grid.size))
+        for way, by_places in enumerate(self.gaps):
+            for grids, by_place in zip(self.grids, by_places, strict=True):
+                gaps += tangents.spread(padded[:, grids, way]) * by_place
+        return gaps, lever_torques
 
 
 def motion_growth(
@@ -313,20 +330,29 @@ def motion_growth(
         Growth of the displacement of the active cells (n,) beside that of the teeth by motions (grids, 6) of the grids,
         with a step of these [mm]; default: there is none.
     """
-    pair, grids = result.gear_pair, tangents.grids
+    pair, grids, state = result.gear_pair, tangents.grids, tangents.state
     separations, pressed = [grid.separation for grid in grids], [grid.pressed for grid in grids]
     held = contact_changes(pair, [grid.contact for grid in grids], separations, pressed, [])
-    motions, covers = np.zeros((2, len(grids), OF_GRIDS)), np.zeros((2, held.contact.size))
-    motions[[0, 1], :, [0, 1]] = 1.0
-    covers[:, held.border.cell] = held.border.slopes[:, :2].T
-    gaps = held.slopes.T[:2, np.concatenate([grid.active[grid.pressed] for grid in grids])].copy()
-    steps = (PART_OF_CELL * np.min([one.spacing for one in separations], axis=0)).tolist()
+    place = np.arange(state.size) - np.searchsorted(state, state)
+    at = np.full((place.max() + 1, state[-1] + 1), state.size)
+    at[place, state] = np.arange(state.size)
+    # first all places along x, then along y
+    ways, places = np.repeat([0, 1], len(at)), np.tile(np.arange(len(at)), 2)
+    motions = np.zeros((ways.size, len(grids), OF_GRIDS))
+    motions[np.arange(ways.size)[:, None], np.arange(len(grids)), ways[:, None]] = place == places[:, None]
+    covers = np.zeros((ways.size, held.contact.size))
+    own = place[held.contact[held.border.cell]] == places[:, None]
+    covers[:, held.border.cell] = own * held.border.slopes[:, :2].T[ways]
+    active = np.concatenate([grid.active[grid.pressed] for grid in grids])
+    gaps = held.slopes.T[:2, active][ways] * (place[tangents.grid] == places[:, None])
+    steps = (PART_OF_CELL * np.min([one.spacing for one in separations], axis=0))[ways].tolist()
     changes = [PairChange("mounting.grids", pair, pair, step) for step in steps]
     growth = MovedContacts(gaps, covers, motions)
     lever_torques = _add_displaced(result, tangents, bending, changes, growth, motions[..., :2], gaps)
     if displaced is not None:
         gaps += [displaced(motion, step) for motion, step in zip(motions, steps, strict=True)]
-    return MotionGrowth(gaps, lever_torques)
+    by_ways = (2, len(at))
+    return MotionGrowth(gaps.reshape(*by_ways, -1), lever_torques.reshape(*by_ways, -1).sum(axis=1), at)
 
 
 def _add_forces_at_cap(tangents: Tangents, covers: Sequence[Array], gaps: Array, lever_torques: Array) -> None:
@@ -402,8 +428,9 @@ def _add_moved_lines(
             gaps[[*steps]] += edge_deflection_growth(pair, separations, forces, [*steps.values()])[:, slices]
     for key, change in enumerate(changes):
         if bending is not None and not change.of_modifications:
+            moves = motions[key].any(axis=-1) | (change.below is not change.above)
             low, high = (
-                _bent(tangents, bending.mounted(gears) if isinstance(bending, SumOfParts) else bending, there)
+                _bent(tangents, bending.mounted(gears) if isinstance(bending, SumOfParts) else bending, there, moves)
                 for gears, there in _on_both_sides(change, separations, motions[key])
             )
             gaps[key] += ((high - low) / change.difference)[slices]
@@ -435,20 +462,27 @@ def _moved_slices(pair: GearPair, change: PairChange, separations: Sequence[Sepa
     return MovedSlices(low, high, change.difference)
 
 
-def _bent(tangents: Tangents, bending: BendingModel, separations: Sequence[Separation]) -> Array:
-    """Bending of the slices of all grids, in one row [mm], under the forces as they are, on other grids."""
+def _bent(tangents: Tangents, bending: BendingModel, separations: Sequence[Separation], moves: Mask) -> Array:
+    """Bending of the slices of all grids, in one row [mm], under the forces as they are, on other grids.
+
+    As far as it has a part in grids that move (grids,).
+    """
     grids, whole = tangents.grids, [grid.slice_force for grid in tangents.grids]
     loaded = [np.flatnonzero(force) for force in whole]
     forces = [force[own] for force, own in zip(whole, loaded, strict=True)]
     lines = [
         (grid.number, LoadedSlices.of(one, own)) for grid, one, own in zip(grids, separations, loaded, strict=True)
     ]
-    deflections = [bending.within(*line) @ force for line, force in zip(lines, forces, strict=True)]
+    deflections = [
+        bending.within(*line) @ force if is_moved else np.zeros(force.size)
+        for line, force, is_moved in zip(lines, forces, moves.tolist(), strict=True)
+    ]
     for state in np.split(np.arange(len(grids)), np.flatnonzero(np.diff(tangents.state)) + 1):
         for i, j in combinations(state.tolist(), 2):
-            between = bending.between(lines[i], lines[j])
-            deflections[i] += between @ forces[j]
-            deflections[j] += between.T @ forces[i]
+            if moves[i] or moves[j]:
+                between = bending.between(lines[i], lines[j])
+                deflections[i] += between @ forces[j]
+                deflections[j] += between.T @ forces[i]
     for force, own, bent in zip(whole, loaded, deflections, strict=True):
         force[own] = bent
     return np.concatenate(whole)
@@ -456,9 +490,6 @@ def _bent(tangents: Tangents, bending: BendingModel, separations: Sequence[Separ
 
 STEP = 1e-3
 """Step of the motion of a grid, over the width of its cells."""
-JUMP = 0.1
-"""Relative change of a curvature over the length in which a peak is known to lie, from which on a relief starts there;
-and between two sides of a step, from which on its start lies between them."""
 ROUNDS, BETWEEN = 6, 17
 """How often that length is divided on the way to the start, by so many places: to 6e-8 of it."""
 FLAT = 1e-12

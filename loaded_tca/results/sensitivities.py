@@ -38,7 +38,8 @@ from loaded_tca.results.figure_slopes import (
     root_slopes,
 )
 from loaded_tca.results.gap_growth import GapGrowth, MotionGrowth, curvature_growth
-from loaded_tca.results.slice_pressure import InnerPeak, SlicePeak, rough_peaks
+from loaded_tca.results.slice_pressure import InnerPeak, SlicePeak, other_slice_pressures, rough_peaks
+from loaded_tca.results.slope_limits import ALIKE, warn_of_alike_peaks, warn_of_share_grids
 from loaded_tca.results.warnings import warn_of_contacts
 from loaded_tca.separation.pair_change import is_of_modifications
 from loaded_tca.threads import one_blas_thread
@@ -140,15 +141,23 @@ class Sensitivities:
 
     def _of_each_pair(self, slopes: Array) -> Array:
         """Changes (keys, grids) of a number of each grid whose derivatives by its forces are ``slopes`` (n,)."""
-        return self._of_each_grid(slopes, self.growth.gaps, self.torques)
+        return self._of_each_grid(self._weights(slopes), self.growth.gaps, self.torques)
 
-    def _of_each_grid(self, slopes: Array, gaps: Array, torques: Array) -> Array:
-        """The same (m, grids) by changes (m, n) of the gaps and (m, states) of the torques."""
+    def _weights(self, slopes: Array) -> list[tuple[Mask, Array, Array]]:
+        """Grids (grids,), one of each state at the most, and derivatives of their numbers by gaps and torques.
+
+        As of :meth:`Tangents.functional_weights`, of numbers whose derivatives by the forces are ``slopes`` (n,).
+        """
         state, grid = self.tangents.state, self.tangents.grid
-        changes, place = np.zeros((len(gaps), state.size)), np.arange(state.size) - np.searchsorted(state, state)
-        for number in range(place.max() + 1):
-            own = place == number
-            change = self.tangents.functional_change(np.where(own[grid], slopes, 0.0), gaps, torques)
+        place = np.arange(state.size) - np.searchsorted(state, state)
+        marks = [place == number for number in range(place.max() + 1)]
+        return [(own, *self.tangents.functional_weights(np.where(own[grid], slopes, 0.0))) for own in marks]
+
+    def _of_each_grid(self, weights: list[tuple[Mask, Array, Array]], gaps: Array, torques: Array) -> Array:
+        """Changes (m, grids) of numbers by changes (m, n) of the gaps and (m, states) of the torques."""
+        state, changes = self.tangents.state, np.zeros((len(gaps), self.tangents.state.size))
+        for own, by_gaps, by_torque in weights:
+            change = self.tangents.summed(gaps * by_gaps) + by_torque * torques
             changes[:, own] = change[:, state[own]]
         return changes
 
@@ -184,31 +193,74 @@ class Sensitivities:
     def transmission_error_by_grids(self) -> Array:
         """How far derivatives of the transmission error depend on the grids, (torque, position, key) [rad per unit].
 
-        The smaller of two changes: by grids that stay in place, and by grids that move with the contact points; with
-        small cells there is no change. Zero for keys that move no grids. Takes half the time of the derivatives by one
-        mounting error.
+        The smaller of two changes: by grids that stay in place, and by grids that move with the contact points; at
+        least the change by grids of contacts that reach no edge, if these move with the contact points. With small
+        cells there is no change. Zero for keys that move no grids. Takes as long as the derivatives by one mounting
+        error.
         """
         by_grids = np.zeros((*self.result.transmission_error.shape, len(self.keys)))
-        moving = np.array([change is not None and not change.of_modifications for change in self.changes])
-        if moving.any():
-            motions = self.growth.motions[..., :2]
-            first = np.searchsorted(self.tangents.state, np.arange(self.places.shape[1]))
-            rates = self._of_motions.rotation_rates(self.tangents)
-            of_grids = np.stack([motions, motions - self.growth.shifts]) * rates.T
-            by_states = np.abs(np.add.reduceat(of_grids.sum(axis=-1), first, axis=-1)).min(axis=0)
-            by_grids[*self.places] = (by_states * moving[:, None]).T
+        if self._moving.any():
+            stiffness = self.tangents.stiffness
+            by_gaps = self.tangents.weights / self.tangents.spread(stiffness)
+            rates = self._of_motions.rates(self.tangents, by_gaps, 1.0 / stiffness)
+            by_grids[*self.places] = self._by_grids(rates).T
         return by_grids
+
+    @property
+    def _moving(self) -> Mask:
+        """Keys (keys,) with which grids move."""
+        return np.array([change is not None and not change.of_modifications for change in self.changes])
+
+    def _by_grids(self, rates: Array) -> Array:
+        """How far derivatives of a number of each state depend on the grids (keys, states): zero where grids stay.
+
+        ``rates`` (2, grids): growth of the number as one of its grids moves [per mm].
+        """
+        motions, first = (
+            self.growth.motions[..., :2],
+            np.searchsorted(self.tangents.state, np.arange(self.places.shape[1])),
+        )
+        left = motions - self.growth.shifts
+        on_edge = (self.result.on_edge > 0)[*self._grids]
+        of_grids = np.stack([motions, left, np.where(on_edge[:, None], 0.0, left)]) * rates.T
+        held, followed, inner = np.abs(np.add.reduceat(of_grids.sum(axis=-1), first, axis=-1))
+        return np.asarray(np.maximum(np.minimum(held, followed), inner) * self._moving[:, None])
 
     @cached_property
     def load_share(self) -> Array:
-        """Derivatives of the load shares, (torque, position, pair, key) [1 per unit]; zero where nothing is carried."""
+        """Derivatives of the load shares, (torque, position, pair, key) [1 per unit]; zero where nothing is carried.
+
+        An AccuracyWarning says by how much derivatives depend on the grids, if this is above 5 %.
+        """
         state = self.tangents.state
         torque, share = self.result.torque[self.places[0]][state], self.result.load_share[*self._grids]
-        own = self._of_followed_contacts(self.tangents.pinion_levers) + self._with_contacts[1]
+        gaps, lever_torques = self._with_contacts
+        own = self._of_each_grid(self._of_shares, gaps, self._raised + self._of_levers(lever_torques)) + lever_torques
         slopes = self._by_pair((own - share * self._raised) / torque)
         shared = ~np.isnan(self.result.load_share) & np.isfinite(self.transmission_error).any(axis=-1, keepdims=True)
         slopes[shared & np.isnan(slopes).all(axis=-1)] = 0.0
+        warn_of_share_grids(self.keys, self.result.load_share, slopes, self.load_share_by_grids, stacklevel=3)
         return slopes
+
+    @cached_property
+    def _of_shares(self) -> list[tuple[Mask, Array, Array]]:
+        """Derivatives of the torques of the pairs by gaps and torques."""
+        return self._weights(self.tangents.pinion_levers)
+
+    @cached_property
+    def load_share_by_grids(self) -> Array:
+        """How far derivatives of the load shares depend on the grids, (torque, position, pair, key) [1 per unit].
+
+        The estimate is that of ``transmission_error_by_grids``.
+        """
+        by_grids = np.zeros((len(self.keys), self.tangents.state.size))
+        if self._moving.any():
+            state, motions = self.tangents.state, self._of_motions
+            for own, by_gaps, by_torque in self._of_shares:
+                rates = motions.rates(self.tangents, by_gaps, by_torque) + own * motions.lever_torques
+                by_grids[:, own] = self._by_grids(rates)[:, state[own]]
+        by_pair = self._by_pair(by_grids / self.result.torque[self.places[0]][self.tangents.state])
+        return np.nan_to_num(by_pair)
 
     @cached_property
     def on_cut_slices(self) -> Mask:
@@ -279,12 +331,24 @@ class Sensitivities:
     def peak_pressure(self) -> Array:
         """Derivatives of the peak pressure of each contact, (torque, position, pair, key) [MPa per unit].
 
-        Of a contact at an edge or a relief start that of its largest slice pressure, or of its inner cells.
+        Of a contact at an edge or a relief start that of its largest slice pressure, or of its inner cells. Where
+        another place of the contact has nearly the same pressure, an AccuracyWarning has the derivative there.
         """
         jumps = kinds.PEAK_BESIDE_JUMP.sentence()
         warn_of_contacts(self.result, kinds.PEAK_SLOPES.sentence(), self._of_changes(self.at_corners), stacklevel=3)
         warn_of_contacts(self.result, jumps, self._of_changes(self.beside_curvature_jumps), stacklevel=3)
-        pair, grids, peaks = self.result.gear_pair, self.tangents.grids, self._rough_peaks
+        slopes = self._of_peaks(self._rough_peaks)
+        lacking, others = self._other_peaks
+        if any(peak is not None for peak in others):
+            peaks = [peak if other is None else other for peak, other in zip(self._rough_peaks, others, strict=True)]
+            moves = [change is not None for change in self.changes]
+            beyond = np.where(moves, self._of_peaks(peaks), slopes)
+            warn_of_alike_peaks(self.keys, self.result.peak_pressure, lacking, slopes, beyond, stacklevel=3)
+        return slopes
+
+    def _of_peaks(self, peaks: Sequence[SlicePeak | InnerPeak | None]) -> Array:
+        """Derivatives (torque, position, pair, key) of peaks of the grids."""
+        pair, grids = self.result.gear_pair, self.tangents.grids
         slopes = peak_pressure_slopes(pair, [(one.contact, one.separation, one.pressure) for one in grids], peaks)
         by_pair = self._of_followed_contacts(self.tangents.gathered(slopes))
         rough = {i: peak for i, peak in enumerate(peaks) if isinstance(peak, SlicePeak)}
@@ -293,6 +357,27 @@ class Sensitivities:
             grown = curvature_growth(pair, [grids[i] for i in at], tops, self.changes, self.growth.of_grids(at))
             by_pair[:, at] += grown * [0.5 * peak.pressure if peak.slopes.any() else 0.0 for peak in tops]
         return self._by_pair(by_pair)
+
+    @cached_property
+    def _other_peaks(self) -> tuple[Array, list[SlicePeak | None]]:
+        """Second peaks of contacts, and how much smaller they are (torque, position, pair), relative; NaN without one.
+
+        A second peak is a place away from the largest pressure with nearly the same pressure, in a contact that reaches
+        an edge or a relief start.
+        """
+        peaks, grids = self._rough_peaks, self.tangents.grids
+        others: list[SlicePeak | None] = [None] * len(grids)
+        lacking = np.full(self.result.load_share.shape, np.nan)
+        tops = {i: peak for i, peak in enumerate(peaks) if peak is not None}
+        if tops:
+            contacts = [(grids[i].contact, grids[i].separation, grids[i].pressure) for i in tops]
+            next_ones = other_slice_pressures(
+                self.result.gear_pair, contacts, [peak.place[1] for peak in tops.values()]
+            )
+            for (i, peak), other in zip(tops.items(), next_ones, strict=True):
+                if other is not None and (short := 1.0 - other.pressure / peak.pressure) < ALIKE:
+                    others[i], lacking[tuple(self._grids[:, i])] = other, max(short, 0.0)
+        return lacking, others
 
     @cached_property
     def _with_contacts(self) -> tuple[Array, Array]:
@@ -307,16 +392,14 @@ class Sensitivities:
         left[np.logical_not(modified)] = left[:, np.logical_not(smooth)] = 0.0
         gaps, lever_torques = self.growth.gaps, self.growth.lever_torques
         if left.any():
-            motions = self._of_motions
-            for way in range(left.shape[-1]):
-                gaps = gaps + left[:, self.tangents.grid, way] * motions.gaps[way]
-                lever_torques = lever_torques + left[..., way] * motions.lever_torques[way]
+            more = self._of_motions.moved(self.tangents, left)
+            gaps, lever_torques = gaps + more[0], lever_torques + more[1]
         return gaps, lever_torques
 
     def _of_followed_contacts(self, slopes: Array) -> Array:
         """As of :meth:`_of_each_pair`, as the grids of smooth contacts follow these."""
         gaps, lever_torques = self._with_contacts
-        return self._of_each_grid(slopes, gaps, self._raised + self._of_levers(lever_torques))
+        return self._of_each_grid(self._weights(slopes), gaps, self._raised + self._of_levers(lever_torques))
 
     @cached_property
     def _rough_peaks(self) -> list[SlicePeak | InnerPeak | None]:

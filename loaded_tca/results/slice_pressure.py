@@ -36,12 +36,18 @@ from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import ContactPoint
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from loaded_tca.pairs.gear_pair import GearPair
 
 NEAREST = 1.5
 """Slices from one that reaches an edge or a relief start, within which no cell tells what a finer grid could count."""
+JUMP, ACROSS = 0.1, 1e-3
+"""Relative change of a curvature over the length in which a peak is known to lie, from which on a relief starts there;
+and between two sides of a step, from which on its start lies between them. Such a step across, over the width of a
+cell."""
+APART = 0.25
+"""Distance of two tops over the length of their contact: a single top, of an ellipse, has 97 % of it over as much."""
 ROUNDS, BETWEEN = 2, 17
 """How often places between those beside the largest pressure are tried, and how many."""
 
@@ -66,6 +72,8 @@ class SlicePeak:
         Across the contact, at the places of ``slices``; None where the pressure is at the cap, or there is none.
     error : float
         Relative change if cells counted from a slice nearer to the edge or the relief start on, or farther from it.
+    steepness : float [1/mm]
+        Relative growth of the curvature at the place across the contact: the middles of slices go with their forces.
     """
 
     pressure: float
@@ -74,13 +82,15 @@ class SlicePeak:
     slices: SliceLoads
     curvature: Array | None
     error: float = 0.0
+    steepness: float = 0.0
 
     @property
     def slopes(self) -> Array:
-        """Derivative (ny,) of the pressure by the forces of the slices [1/mm^2]; zero at the cap."""
+        """Derivative (nx, ny) of the pressure by the forces of the cells [1/mm^2]; zero at the cap."""
         if self.curvature is None:
-            return np.zeros(self.slices.force.size)
-        return 0.5 * self.pressure * _relative_slopes(self.slices, self.place[1], self.curvature)
+            return np.zeros(self.slices.arms.shape)
+        by_slice = _relative_slopes(self.slices, self.place[1], self.curvature)
+        return 0.5 * self.pressure * (by_slice + self.steepness * self.slices.middle_slopes(self.place[1]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,29 +189,80 @@ def largest_slice_pressures(pair: GearPair, contacts: Sequence[UnderPressure]) -
 
     Notes
     -----
-    In the derivative the place of the largest pressure and its curvature are held: p dq/2q. Where the average has room
-    in the contact, q k is that of a parabola through the place and those one slice before and after it, since on even
-    grids two places may be alike. Where the contact is shorter than the length of the average, that grows with it.
+    In the derivative the place of the largest pressure along the contact is held: p dq/2q + p dk/2k, k at the middle
+    of the force across, which moves. Where the average has room in the contact, q k is that of a parabola through the
+    place and those one slice before and after it, since on even grids two places may be alike. Where the contact is
+    shorter than the length of the average, that grows with it.
     """
+    return _slice_peaks(pair, contacts, lambda _, pressure: pressure)
+
+
+def other_slice_pressures(
+    pair: GearPair, contacts: Sequence[UnderPressure], places: Sequence[float]
+) -> list[SlicePeak | None]:
+    """Largest local maximum of the slice pressures of each contact, apart from a place along it; None without any.
+
+    Parameters
+    ----------
+    pair : GearPair
+    contacts : sequence of (ContactPoint, Separation, (nx, ny) array [MPa])
+        At least one, each under a load > 0.
+    places : sequence of float [mm]
+        Stretches over which is averaged do not overlap that about the place, and the other one lies a quarter of the
+        contact's length away, beyond what one top has within a few percent of its pressure.
+    """
+
+    def apart(along: Array, pressure: Array) -> Array:
+        slices = [SliceLoads(pair.module, one, cells) for _, one, cells in contacts]
+        least = np.array([max(one.length, APART * (one.ends[1] - one.ends[0])) for one in slices])
+        padded = np.pad(pressure, ((0, 0), (1, 1)))
+        tops = (pressure >= padded[:, :-2]) & (pressure >= padded[:, 2:])
+        return np.where(tops & (np.abs(along - np.array(places)[:, None]) > least[:, None]), pressure, 0.0)
+
+    return [peak if peak.pressure > 0.0 else None for peak in _slice_peaks(pair, contacts, apart)]
+
+
+def _slice_peaks(
+    pair: GearPair, contacts: Sequence[UnderPressure], wanted: Callable[[Array, Array], Array]
+) -> list[SlicePeak]:
+    """Peak of the slices of each contact at the largest ``wanted`` of places and pressures (contacts, n) along it."""
     slices = [SliceLoads(pair.module, separation, pressure) for _, separation, pressure in contacts]
     axes = np.array([separation.axes for _, separation, _ in contacts])
     gap = NormalGap(pair.sharp, [contact for contact, *_ in contacts], axes)
     count = max(each.places.size for each in slices)
     places = np.stack([np.pad(each.places, (0, count - each.places.size), "edge") for each in slices])
     pressure, bends = _slice_pressures(pair, gap, slices, places)
-    finest = places
+    finest, pressure = places, wanted(places, pressure)
+    known = pressure.max(axis=1) > 0.0
     for _ in range(ROUNDS):  # where the curvature jumps the largest pressure is at the jump, between two places
         top = pressure.argmax(axis=1, keepdims=True)
         below, above = (np.take_along_axis(finest, np.clip(top + k, 0, finest.shape[1] - 1), 1) for k in (-1, 1))
         finest = below + (above - below) * np.linspace(0.0, 1.0, BETWEEN)
         pressure, _ = _slice_pressures(pair, gap, slices, finest)
+    pressure = np.where(known[:, None], pressure, 0.0)
     cap = math.inf if pair.max_pressure is None else pair.max_pressure
+    tops = pressure.argmax(axis=1)
+    at = np.array([each.at(along[top])[:2] for each, along, top in zip(slices, finest, tops, strict=True)])
+    steepness = _steepness(gap, at, np.array([separation.spacing[0] for _, separation, _ in contacts]))
     peaks = []
-    for k, top in enumerate(pressure.argmax(axis=1).tolist()):
-        highest, (x, y, _) = float(pressure[k, top]), slices[k].at(finest[k, top])
+    for k, highest in enumerate(pressure[np.arange(tops.size), tops].tolist()):
         curvature, resolution = bends[k] if 0.0 < highest < cap else None, float(np.diff(finest[k]).max())
-        peaks.append(SlicePeak(min(highest, cap), (float(x), float(y)), resolution, slices[k], curvature))
+        place = float(at[k, 0]), float(at[k, 1])
+        numbers = resolution, slices[k], curvature
+        peaks.append(SlicePeak(min(highest, cap), place, *numbers, steepness=float(steepness[k])))
     return peaks
+
+
+def _steepness(gap: NormalGap, places: Array, widths: Array) -> Array:
+    """Relative growth (contacts,) of the curvatures across contacts at places (contacts, 2) [1/mm], zero at jumps.
+
+    By a difference over a small part of the ``widths`` (contacts,) of the cells.
+    """
+    step = ACROSS * widths
+    x = places[:, :1] + step[:, None] * [-1.0, 0.0, 1.0]
+    low, middle, high = np.maximum(gap.curvature_across(x, np.broadcast_to(places[:, 1:], x.shape)), 0.0).T
+    part = np.divide(high - low, middle, out=np.zeros(step.size), where=middle > 0.0)
+    return np.asarray(np.where(np.abs(part) < JUMP, part / (2.0 * step), 0.0))
 
 
 def _slice_pressures(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from loaded_tca.arrays import GEARS, Array
 from loaded_tca.results.figures import FIGURES
 from loaded_tca.results.sensitivities import TORQUE
+from loaded_tca.results.slope_limits import USUAL, usual_tolerance
 from loaded_tca.scene.section import values_of
 
 if TYPE_CHECKING:
@@ -16,10 +17,6 @@ if TYPE_CHECKING:
     from loaded_tca.results.sensitivities import Sensitivities
     from loaded_tca.scene import Scene
 
-USUAL = {"um": 1.0, "mm": 0.01, "deg": 0.01}
-"""Standard deviation of a key by the unit at the end of its name."""
-OF_RELIEF_ENDS = 10.0
-"""The same, so many times as large, where a relief starts or how long it is."""
 OF_THE_TORQUE = 0.01
 """Standard deviation of the torque, as a part of the largest."""
 APEX = "pair.apex_offset_mm"
@@ -76,9 +73,7 @@ def _varied(scene: Scene) -> list[str]:
 def _usual(scene: Scene, key: str) -> float:
     if key == TORQUE:
         return OF_THE_TORQUE * 1e-3 * max(scene.torques)
-    name = key.rpartition(".")[2]
-    of_relief_end = "relief" in name and not name.endswith("_um")
-    return USUAL.get(name.rpartition("_")[2], 1.0) * (OF_RELIEF_ENDS if of_relief_end else 1.0)
+    return usual_tolerance(key)
 
 
 def key_figure_slopes(sensitivities: Sensitivities) -> dict[str, Array]:

@@ -26,6 +26,7 @@ from tests.samples.results import result
 pytestmark = pytest.mark.filterwarnings(
     "ignore:an edge of a flank cuts the slices",
     "ignore:derivatives of the transmission error depend",
+    "ignore:derivatives of load shares depend",
     "ignore:K_Hbeta follows the strip with",
 )  # contacts reach edges, and all is read
 ROUNDING = 1e-12

@@ -329,4 +329,4 @@ def test_derivative_of_a_peak_counts_what_forces_change_of_the_length_of_the_ave
         low, high = (slices(pressure + by * step).line_load.max() for by in (-1.0, 1.0))
         expected.append(0.5 * (high - low) / (2e-4 * even.force[place]) / even.line_load[top])
     # the largest line load is that at one of the borders of the slices; with the length held up to 2.9 times as much
-    assert_allclose(peak.slopes[carrying], expected, rtol=0.0, atol=3e-4 * np.abs(expected).max())
+    assert_allclose(peak.slopes[0, carrying], expected, rtol=0.0, atol=3e-4 * np.abs(expected).max())
