@@ -61,6 +61,10 @@ class Jet:
             self._bends = self._bends()
         return self._bends
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled with its second derivatives: functions that would return them cannot be."""
+        return Jet, (self.value, self.rho, self.z, self.bends)
+
     rho_rho = property(lambda self: self.bends[0], doc="Second derivative by rho.")
     rho_z = property(lambda self: self.bends[1], doc="Mixed derivative.")
     z_z = property(lambda self: self.bends[2], doc="Second derivative by z.")

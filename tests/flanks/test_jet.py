@@ -1,6 +1,7 @@
 """The algebra of values, gradients and Hessians, against polynomials differentiated by hand."""
 
 import math
+import pickle
 
 import numpy as np
 from hypothesis import given
@@ -111,3 +112,8 @@ def test_second_derivatives_are_found_once_and_only_when_they_are_asked_for():
     assert whole.rho_rho == 3.0 * (2.0 * 3.0**2 + 2.0 * 6.0) + 2.0 * 9.0 * 6.0 + 18.0  # f g'' + 2 f' g' + f'' g
     assert whole.z_z == 3.0 * (2.0 * 1.0**2 - 2.0 * 2.0) + 2.0 * 3.0 * 2.0 - 6.0
     assert sorted(asked) == ["bends", "second"]
+
+
+def test_pickled_function_has_the_second_derivatives_that_were_not_asked_for_before():
+    jet = pickle.loads(pickle.dumps(Jet(2.0, 3.0, 1.0, lambda: (6.0, 2.0, -2.0)) * 2.0))
+    assert parts(jet) == [4.0, 6.0, 2.0, 12.0, 4.0, -4.0]
