@@ -1553,8 +1553,8 @@ FAULTS = (
             (
                 "gaps do not go with the grids",
                 "results/gap_growth.py",
-                "gaps = held.slopes.T[:2,",
-                "gaps = 0.0 * held.slopes.T[:2,",
+                "gaps = (ways[:, tangents.grid] * held.slopes[active, :2]).sum(axis=-1)",
+                "gaps = 0.0 * (ways[:, tangents.grid] * held.slopes[active, :2]).sum(axis=-1)",
                 "test_grids_change_no_derivative_of_a_contact_that_reaches_no_edge",
             ),
             (
@@ -2148,8 +2148,8 @@ FAULTS = (
     Fault(
         "derivatives: peak pressures by modifications are those of contacts that stay on their grids",
         "results/sensitivities.py",
-        "left[:, self.tangents.grid, way] * motions.gaps[way]",
-        "0.0 * motions.gaps[way]",
+        "gaps[following] += motions.gaps",
+        "gaps[following] += 0.0 * motions.gaps",
         "results/test_sensitivities.py::"
         "test_peak_pressures_follow_contacts_that_a_profile_crowning_moves_over_their_grids",
     ),
@@ -3826,6 +3826,14 @@ FAULTS = (
         "    moved = (np.nan_to_num(slopes)[errors > TOLD] != 0.0).any(axis=0)",
         "    moved = (np.nan_to_num(slopes)[errors > 9.0] != 0.0).any(axis=0)",
         "results/test_sensitivities_at_edges.py::test_derivatives_of_the_strip_beside_a_rounded_end_are_warned_of",
+    ),
+    Fault(
+        "derivatives: each pair gives way as if all grids moved as its own",
+        "results/sensitivities.py",
+        "gaps[following] += motions.gaps",
+        "gaps[following] += (left[following][:, self.tangents.grid] * np.moveaxis(self.with_motions("
+        "ways=np.broadcast_to(np.eye(2)[:, None], (2, len(self.pairs), 2))).gaps, 0, -1)).sum(axis=-1)",
+        "supports/test_sensitivities.py::test_load_shares_follow_contacts_that_a_modification_moves_by_unlike_ways",
     ),
 )
 

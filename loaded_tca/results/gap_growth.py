@@ -266,21 +266,21 @@ def _add_displaced(
 
 
 PART_OF_CELL = 1e-2
-"""Motion of grids of which differences are taken, over the smallest cell."""
+"""Motion of grids of which differences are taken, over the cells of the grid that makes most of them."""
 
 
 @dataclass(frozen=True, eq=False)
 class MotionGrowth:
-    """Growth of what the loaded states balance as all their grids move along x or y, forces held.
+    """Growth of what the loaded states balance as grids move along x and y, forces held.
 
     Any grid is as good as another, so that in the limit of small cells no figure changes by it; what figures change
     tells how far derivatives depend on the motions of the grids.
 
     Attributes
     ----------
-    gaps : (2, n) array [1]
-        At the active cells, with what the forces as they are displace more.
-    lever_torques : (2, grids) array [N]
+    gaps : (m, n) array [mm]
+        By each of m motions, at the active cells, with what the forces as they are displace more.
+    lever_torques : (m, grids) array [N mm]
         Growth of the torque of each pair by what its cells at the cap carry more.
     """
 
@@ -288,9 +288,9 @@ class MotionGrowth:
     lever_torques: Array
 
     def rotation_rates(self, tangents: Tangents) -> Array:
-        """Growth of the rotation of each state as one of its grids moves (2, grids) [rad/mm].
+        """Growth of the rotation of each state as one of its grids makes its part of a motion (m, grids) [rad].
 
-        What a pair bends under the forces of others counts as if their grids moved alike.
+        What a pair gives way under the forces of others counts as if all grids made their parts.
         """
         by_grid = np.add.reduceat(self.gaps * tangents.weights, np.concatenate([[0], tangents.ends[:-1]]), axis=1)
         return np.asarray((by_grid - self.lever_torques) / tangents.stiffness[tangents.state])
@@ -301,8 +301,10 @@ def motion_growth(
     tangents: Tangents,
     bending: BendingModel | None,
     displaced: Callable[[Array, float], Array] | None = None,
+    *,
+    ways: Array,
 ) -> MotionGrowth:
-    """Growth with the motions of the grids.
+    """Growth with motions of the grids.
 
     Parameters
     ----------
@@ -311,16 +313,22 @@ def motion_growth(
     bending : BendingModel or None
     displaced : callable, optional
         Growth of the displacement of the active cells (n,) beside that of the teeth by motions (grids, 6) of the grids,
-        with a step of these [mm]; default: there is none.
+        with a step of these; default: there is none.
+    ways : (m, grids, 2) array [mm]
+        Of each grid along its x and y. Pairs give way under the forces of each other, on common teeth and supports:
+        growth with motions of single grids is not that of all grids, taken in parts.
     """
     pair, grids = result.gear_pair, tangents.grids
     separations, pressed = [grid.separation for grid in grids], [grid.pressed for grid in grids]
     held = contact_changes(pair, [grid.contact for grid in grids], separations, pressed, [])
-    motions, covers = np.zeros((2, len(grids), OF_GRIDS)), np.zeros((2, held.contact.size))
-    motions[[0, 1], :, [0, 1]] = 1.0
-    covers[:, held.border.cell] = held.border.slopes[:, :2].T
-    gaps = held.slopes.T[:2, np.concatenate([grid.active[grid.pressed] for grid in grids])].copy()
-    steps = (PART_OF_CELL * np.min([one.spacing for one in separations], axis=0)).tolist()
+    motions, covers = np.zeros((len(ways), len(grids), OF_GRIDS)), np.zeros((len(ways), held.contact.size))
+    motions[..., :2] = ways
+    border = held.border
+    covers[:, border.cell] = (ways[:, held.contact[border.cell]] * border.slopes[:, :2]).sum(axis=-1)
+    active = np.concatenate([grid.active[grid.pressed] for grid in grids])
+    gaps = (ways[:, tangents.grid] * held.slopes[active, :2]).sum(axis=-1)
+    parts = np.abs(ways / [one.spacing for one in separations]).max(axis=(1, 2))  # of cells
+    steps = (PART_OF_CELL / np.where(parts > 0.0, parts, 1.0)).tolist()
     changes = [PairChange("mounting.grids", pair, pair, step) for step in steps]
     growth = MovedContacts(gaps, covers, motions)
     lever_torques = _add_displaced(result, tangents, bending, changes, growth, motions[..., :2], gaps)

@@ -87,7 +87,7 @@ class Sensitivities:
     changes : tuple of PairChange or None
         Pairs of gears that differ in each key; none of the torque.
     with_motions : callable
-        Growth with the motions of the grids, as of :func:`loaded_tca.results.gap_growth.motion_growth`.
+        Growth with motions ``ways`` of the grids, as of :func:`loaded_tca.results.gap_growth.motion_growth`.
     """
 
     keys: tuple[str, ...]
@@ -97,7 +97,7 @@ class Sensitivities:
     pairs: Indices
     growth: GapGrowth
     changes: tuple[PairChange | None, ...]
-    with_motions: Callable[[], MotionGrowth]
+    with_motions: Callable[..., MotionGrowth]
 
     def __reduce__(self) -> tuple[Callable[..., Sensitivities], tuple[CycleNumbers, tuple[str, ...]]]:
         """Found anew by pickle and copy: the linear systems are large, and quickly made."""
@@ -133,10 +133,6 @@ class Sensitivities:
         by_pair = np.full((*self.result.load_share.shape, len(self.keys)), np.nan)
         by_pair[*self._grids] = values.T
         return by_pair
-
-    @cached_property
-    def _of_motions(self) -> MotionGrowth:
-        return self.with_motions()
 
     def _of_each_pair(self, slopes: Array) -> Array:
         """Changes (keys, grids) of a number of each grid whose derivatives by its forces are ``slopes`` (n,)."""
@@ -192,7 +188,8 @@ class Sensitivities:
         if moving.any():
             motions = self.growth.motions[..., :2]
             first = np.searchsorted(self.tangents.state, np.arange(self.places.shape[1]))
-            rates = self._of_motions.rotation_rates(self.tangents)
+            alike = np.broadcast_to(np.eye(2)[:, None], (2, len(self.pairs), 2))  # all grids along x, and along y
+            rates = self.with_motions(ways=alike).rotation_rates(self.tangents)
             of_grids = np.stack([motions, motions - self.growth.shifts]) * rates.T
             by_states = np.abs(np.add.reduceat(of_grids.sum(axis=-1), first, axis=-1)).min(axis=0)
             by_grids[*self.places] = (by_states * moving[:, None]).T
@@ -305,11 +302,12 @@ class Sensitivities:
         left = self.growth.shifts - self.growth.motions[..., :2]
         left[np.logical_not(modified)] = left[:, np.logical_not(smooth)] = 0.0
         gaps, lever_torques = self.growth.gaps, self.growth.lever_torques
-        if left.any():
-            motions = self._of_motions
-            for way in range(left.shape[-1]):
-                gaps = gaps + left[:, self.tangents.grid, way] * motions.gaps[way]
-                lever_torques = lever_torques + left[..., way] * motions.lever_torques[way]
+        following = left.any(axis=(1, 2))
+        if following.any():
+            motions = self.with_motions(ways=left[following])
+            gaps, lever_torques = gaps.copy(), lever_torques.copy()
+            gaps[following] += motions.gaps
+            lever_torques[following] += motions.lever_torques
         return gaps, lever_torques
 
     def _of_followed_contacts(self, slopes: Array) -> Array:
