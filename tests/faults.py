@@ -3896,6 +3896,8 @@ FAULTS = (
         "math.degrees(pinion.transverse_pressure_angle)",
         "math.degrees(mesh.working_pressure_angle)",
         "scene/test_rack_scene.py::test_check_has_the_pressure_angle_of_the_basic_rack_at_any_distance",
+    ),
+    Fault(
         "derivatives of shares: grids of a position that follow their contacts move as if all moved alike",
         "results/gap_growth.py",
         "gaps += tangents.spread(padded[:, grids, way]) * by_place",

@@ -76,6 +76,9 @@ what they leave is coupled."""
 SWINGING = 7
 """Steps after which loads go half the way only: a tooth pair that comes into contact at one of the positions and not at
 the next step makes them swing."""
+CALM = 0.1
+"""Change of the motions over that of the step before, up to which loads go the whole way all the same: swings keep half
+of it and more, and a gear that half of a swing has brought into line needs no more halves."""
 MOST_STEPS = 12
 """Steps before giving up; two to four are the rule."""
 
@@ -296,7 +299,7 @@ class GearsUnderTorques:
         roughly = replace(self.grid, agreement=ROUGHLY, accuracy=max(self.grid.accuracy, ROUGH_PEAK))
         pinion, wheel = loads_at_first_contact(supports, at_rest(self.pair, supports), 1.0)
         loads = {torque: (torque * pinion, torque * wheel) for torque in torques}
-        left = [*loads]
+        left, changes = [*loads], dict.fromkeys(loads, 0.0)
         for step in range(MOST_STEPS):
             cycles = [self._cycle(self._moved(torque, loads[torque]), spread, roughly) for torque in left]
             for torque, cycle, carried in zip([*left], cycles, solve_cycles(cycles), strict=True):
@@ -304,8 +307,10 @@ class GearsUnderTorques:
                 assert standing.supports is not None
                 assert standing.loads is not None
                 mean = _mean_load(standing.supports, carried)
-                if step >= SWINGING:
+                change = self._distance(standing.supports, mean, standing.loads)
+                if step >= SWINGING and change > CALM * changes[torque]:
                     mean = _halfway(standing.loads, mean)
+                changes[torque] = change
                 loads[torque] = mean
                 if self._are_near(standing, mean):
                     left.remove(torque)

@@ -144,7 +144,7 @@ class JoinedSensitivities(Sensitivities):
     pairs: Indices = field(init=False)
     growth: GapGrowth = field(init=False)
     changes: tuple[PairChange | None, ...] = field(init=False)
-    with_motions: Callable[[], MotionGrowth] = field(init=False)
+    with_motions: Callable[..., MotionGrowth] = field(init=False)
     parts: tuple[Sensitivities | None, ...]
 
     transmission_error = _by_torque("transmission_error")

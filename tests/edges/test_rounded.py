@@ -20,7 +20,7 @@ from loaded_tca.edges.rounded import (
     pressure_at_rounded_edge,
     reached_arcs,
 )
-from loaded_tca.errors import AccuracyWarning
+from loaded_tca.errors import AccuracyWarning, noted_accuracy_warnings
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.rounding import EdgeRounding
 from loaded_tca.loaded.load_sharing import share_load
@@ -334,7 +334,10 @@ def test_contacts_left_out_do_not_change_the_largest_pressure():
         | {"analysis.cells": (28, 28)}
         | {f"{gear}.{edge}_rounding_mm": 0.2 for gear in ("pinion", "wheel") for edge in ("tip", "side")}
     )
-    largest, every = (analyse(scene.with_changes({"analysis.edge_pressures": which})) for which in ("largest", "all"))
+    with noted_accuracy_warnings(given=False):  # on 28 cells the estimated error of the largest pressure is 3.2 %
+        largest, every = (
+            analyse(scene.with_changes({"analysis.edge_pressures": which})) for which in ("largest", "all")
+        )
     assert np.isnan(largest.edge_pressure_error).sum() > np.isnan(every.edge_pressure_error).sum()
     assert_allclose(np.nanmax(largest.edge_pressure), np.nanmax(every.edge_pressure), rtol=1e-9)
 

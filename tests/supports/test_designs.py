@@ -125,7 +125,8 @@ def test_stiffness_of_a_bearing_is_varied_in_a_study() -> None:
     [
         ({"analysis.free_edges": False}, ("transmission_error",)),
         pytest.param(
-            {"pinion.tip_rounding_mm": 0.2, "wheel.tip_rounding_mm": 0.2},
+            # at the edge of a tip 32 cells leave 4 % of the line load's slope in differences of analyses
+            {"pinion.tip_rounding_mm": 0.2, "wheel.tip_rounding_mm": 0.2, "analysis.cells": (48, 48)},
             ("transmission_error", "line_load"),
             marks=pytest.mark.thorough,
         ),
