@@ -3827,6 +3827,13 @@ FAULTS = (
         "    moved = (np.nan_to_num(slopes)[errors > 9.0] != 0.0).any(axis=0)",
         "results/test_sensitivities_at_edges.py::test_derivatives_of_the_strip_beside_a_rounded_end_are_warned_of",
     ),
+    Fault(
+        "output: names of sensitivities a blank apart, so that numbers go on below the names of others",
+        "output/tables.py",
+        "    width = APART + max(len(cell) for _, cells in rows for cell in cells)",
+        "    width = 1 + max(len(cell) for _, cells in rows for cell in cells)",
+        "results/test_root_sensitivities.py::test_tables_have_root_tension_where_the_scene_asks_for_it",
+    ),
 )
 
 
