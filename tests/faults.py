@@ -3834,6 +3834,13 @@ FAULTS = (
         "    width = 1 + max(len(cell) for _, cells in rows for cell in cells)",
         "results/test_root_sensitivities.py::test_tables_have_root_tension_where_the_scene_asks_for_it",
     ),
+    Fault(
+        "whole revolution: a peak pressure in slices at an edge is no finding",
+        "results/revolution.py",
+        "    if not at_edge[place]:",
+        "    if not at_edge[place] or True:",
+        "test_revolution.py::test_peak_at_an_edge_is_told_with_its_angle_teeth_and_share",
+    ),
 )
 
 

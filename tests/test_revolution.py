@@ -1,6 +1,7 @@
 """Whole revolutions under load: limits, slopes, shares, files, refusals."""
 
 import math
+import re
 from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
@@ -148,6 +149,40 @@ def test_tooth_of_shares_that_tie_is_that_of_the_highest_pressure():
     assert figures["largest_load_share"] == 1.0
     for gear in ("pinion", "wheel"):
         assert figures[f"{gear}_tooth_of_largest_load_share"] == data[f"{gear}_tooth"].values[41, pair]
+
+
+def with_edges(at_edge):
+    """The small turn with 900 MPa on a pair with 7 % of the torque, 800 MPa on another one, less elsewhere."""
+    data = small_turn().dataset.copy(deep=True)
+    data.peak_pressure.values[...] = np.minimum(data.peak_pressure.values, 700.0)
+    data.on_edge.values[...] = 0
+    data.load_share.values[0, 41, 1] = 0.07
+    data.peak_pressure.values[0, [41, 8], 1] = 900.0, 800.0
+    for place in at_edge:
+        data.on_edge.values[(0, *place)] = 1
+    return replace(small_turn(), dataset=data)
+
+
+def test_peak_at_an_edge_is_told_with_its_angle_teeth_and_share():
+    turn = with_edges([(41, 1)])
+    (sentence,) = turn.findings()
+    angle = np.rad2deg(turn.pinion_angle[41])
+    assert "the peak pressure 900 MPa at 20 N m lies in slices at an edge" in sentence
+    assert float(re.search(r"pinion angle (\S+) deg", sentence)[1]) == pytest.approx(angle, rel=1e-3)  # four digits
+    pinion, wheel = (int(turn.dataset[f"{gear}_tooth"].values[41, 1]) for gear in ("pinion", "wheel"))
+    assert f"tooth {pinion} of the pinion and tooth {wheel} of the wheel, which carry 7 % of the torque" in sentence
+    assert "the largest of contacts away from edges is 800 MPa" in sentence
+    assert f"finding: {sentence}" in turn.summary().splitlines()
+    assert turn.beside_figures()["findings"] == (sentence,)
+
+
+def test_peak_away_from_edges_is_no_finding():
+    assert with_edges([(8, 1)]).findings() == ()
+
+
+def test_peak_of_contacts_that_all_reach_an_edge_says_so():
+    (sentence,) = with_edges(np.argwhere(small_turn().normal_force[0] > 0.0)).findings()
+    assert "all contacts reach an edge" in sentence
 
 
 def test_composite_deviations_are_spans_of_the_curve():

@@ -324,6 +324,22 @@ class Revolution(OverTurns):
         torques, positions = (self.dataset.sizes[name] for name in CYCLE)
         return f"Revolution({self.pitches} pitches x {self.per_pitch} positions, {torques} torques, {positions} each)"
 
+    def findings(self) -> tuple[str, ...]:
+        """Return a sentence for each torque whose peak pressure lies in slices at an edge.
+
+        At which pinion angle, on which teeth, how much they carry, and the largest pressure of contacts away from
+        edges. The pressure at the edge itself is none of the numbers of a revolution.
+        """
+        return tuple(filter(None, (_peak_finding(self.under(t)) for t in range(len(self.torque)))))
+
+    def sentences(self) -> dict[str, tuple[str, ...]]:
+        """What edges do to the peak pressure, and accuracy warnings."""
+        return {"note": self.notes(), "finding": self.findings(), "warning": self.warnings or ()}
+
+    def beside_figures(self) -> dict[str, Any]:
+        """Findings and warnings."""
+        return {"findings": self.findings(), **super().beside_figures()}
+
     def by_tooth(self, gear: str = "wheel") -> xarray.Dataset:
         """Return what each tooth of a gear carries at the most in the revolution.
 
@@ -399,6 +415,28 @@ class Revolution(OverTurns):
         arrays["pitches"] = ((), self.pitches, {"units": "1"})
         coordinates = {TORQUE: 1e-3 * self.torque, angle: data["pinion_angle"].values}
         return xarray.Dataset(arrays, coordinates, {"title": self.scene.title})
+
+
+def _peak_finding(under: UnderTorque) -> str:
+    """Where the peak pressure lies, if that is at an edge; nothing elsewhere."""
+    pressure, place, at_edge = under.peak_pressure, under.place("peak_pressure"), under.on_edge > 0
+    if not at_edge[place]:
+        return ""
+    away = pressure[~at_edge]
+    teeth = [_tooth(gear, "peak_pressure", under) for gear in GEARS]
+    most = (
+        f"the largest of contacts away from edges is {plain(np.nanmax(away))} MPa"
+        if np.isfinite(away).any()
+        else "all contacts reach an edge"
+    )
+    angle = math.degrees(float(under.result.pinion_angle[place[0]]))
+    return (
+        f"the peak pressure {plain(pressure[place])} MPa at {plain(1e-3 * float(under.torque), 6)} N m lies in slices "
+        f"at an edge, at pinion angle {plain(angle)} deg on tooth {teeth[0]} of the pinion and tooth {teeth[1]} of the "
+        f"wheel, which carry {plain(100.0 * float(under.load_share[place]), 3)} % of the torque; {most}; a revolution "
+        "has neither the name of the edge nor the pressure at the edge itself: the pressure map of that position, "
+        f"analyse_revolution(scene, maps=[{place[0]}]), shows the edge"
+    )
 
 
 def open_turns(scene: Scene, pitches: int) -> list[str]:
