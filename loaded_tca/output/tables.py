@@ -109,6 +109,7 @@ def _comparison_json(comparison: Comparison) -> str:
         "torques": [
             {
                 "pinion_torque_Nm": 1e-3 * float(torque),
+                "findings": comparison.findings(float(torque)),
                 "figures": {
                     figure: told(k, index, figure) for index, figure in enumerate(figures.figure.values.tolist())
                 },

@@ -315,7 +315,7 @@ LEAST_SHARE, SMALL_SHARE = 1e-3, 0.1
 
 def findings_of(result: CycleNumbers) -> tuple[str, ...]:
     """Sentences on what the largest pressures under each torque rest on; see ``MeshCycle.findings``."""
-    by_torque = ((_edge_finding(result, t), _peak_finding(result, t)) for t in range(len(result.torque)))
+    by_torque = ((_edge_finding(result, t), peak_finding(result, t)) for t in range(len(result.torque)))
     return tuple(sentence for sentences in by_torque for sentence in sentences if sentence)
 
 
@@ -410,8 +410,11 @@ def _edge_finding(result: CycleNumbers, torque: int) -> str:
     )
 
 
-def _peak_finding(result: CycleNumbers, torque: int) -> str:
-    """A peak pressure of slices at an edge in a pair that carries little, beside that of pairs that carry more."""
+def peak_finding(result: CycleNumbers, torque: int) -> str:
+    """A sentence on a peak pressure of slices at an edge in a pair that carries less than a tenth of the torque.
+
+    Beside it stands the peak pressure of pairs that carry more. Empty: the peak pressure lies elsewhere.
+    """
     place = result.peak_contact(torque)
     if place is None or not result.on_edge[torque][place] or result.load_share[torque][place] >= SMALL_SHARE:
         return ""
