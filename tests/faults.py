@@ -3848,6 +3848,13 @@ FAULTS = (
         " for name, sentence in told.items() if not sentence)",
         "results/test_comparison.py::test_peak_at_an_edge_on_a_pair_that_carries_little_is_told",
     ),
+    Fault(
+        "rating: flanks that are not analysed have stress 0 and safety inf under the reversed bins that load them",
+        "rating/rating.py",
+        'self.values("reversed") > 0',
+        'self.values("reversed") > 1',
+        "rating/test_spectrum.py::test_reversed_bins_load_the_other_flanks_and_bend_roots_both_ways",
+    ),
 )
 
 
