@@ -3855,6 +3855,13 @@ FAULTS = (
         'self.values("reversed") > 1',
         "rating/test_spectrum.py::test_reversed_bins_load_the_other_flanks_and_bend_roots_both_ways",
     ),
+    Fault(
+        "whole revolution: the orders that leak are those that the revolution has",
+        "results/revolution.py",
+        "self.pitches % teeth != 0) &",
+        "self.pitches % teeth == 0) &",
+        "test_revolution.py::test_orders_of_a_gear_that_makes_no_whole_turn_leak_where_they_lie",
+    ),
 )
 
 

@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import InputError, Revolution, analyse, analyse_revolution, load_result, read_scene
 from loaded_tca import warning_kinds as kinds
-from loaded_tca.plots.revolution import plot_revolution_error
+from loaded_tca.plots.revolution import plot_revolution_error, plot_revolution_spectrum
 from loaded_tca.revolution import _Numbers, _sentences, expected_revolution_effort
 from loaded_tca.studies import Study, revolution_figures, run_study
 from loaded_tca.unloaded.tooth_cycle import REACH
@@ -272,6 +272,32 @@ def test_revolution_that_is_not_closed_says_so():
     labels = turn.labels()
     assert labels["total_single_flank_deviation_um"] == "single flank deviation over 12 pitches [um]"
     assert "span of 12 pitches, no whole turn: " in told(plot_revolution_error(turn))
+
+
+def test_orders_of_a_gear_that_makes_no_whole_turn_leak_where_they_lie():
+    """A sine of the pinion's rotation over a turn of the wheel: its largest amplitude is at the order that names it."""
+    scene = helical({"revolution.pitches": "wheel", "revolution.positions_per_pitch": 4, "pinion.pitch.runout_um": 5.0})
+    data = small_turn().dataset
+    for own in (1, 2, 5):
+        sine = np.sin(own * data.pinion_angle.values + 0.3)
+        turn = replace(
+            small_turn(), scene=scene, dataset=data.assign(transmission_error=data.transmission_error * 0.0 + sine)
+        )
+        (leaking,) = turn.leaking_orders().values()
+        assert leaking[turn.spectrum(0).amplitude.argmax()] == own
+    assert "leaking_order_of_pinion" in turn.tables()["orders"]().values
+    assert "no whole turn of the pinion: its orders leak" in told(plot_revolution_spectrum(turn))
+
+
+def test_orders_half_way_between_those_of_the_revolution_leak():
+    scene = helical({"revolution.pitches": 12, "revolution.positions_per_pitch": 4, "wheel.pitch.runout_um": 5.0})
+    leaking = replace(small_turn(), scene=scene).leaking_orders()
+    assert_allclose(leaking["wheel"] % 2, 1.0)  # 12 pitches of 24 have the even orders
+
+
+def test_whole_turns_have_no_leaking_orders():
+    assert small_turn().leaking_orders() == {}
+    assert "leaking" not in " ".join(small_turn().tables()["orders"]().values)
 
 
 def test_progress_is_told_to_its_end():

@@ -81,6 +81,8 @@ def plot_revolution_error(revolution: OverTurns) -> Figure:
 def plot_revolution_spectrum(revolution: OverTurns, torque: int | None = None) -> Figure:
     """Orders of the transmission error, mesh orders, sidebands and orders of rotation told apart.
 
+    The title says which gear's orders are no orders of the revolution.
+
     Parameters
     ----------
     revolution : Revolution
@@ -121,7 +123,11 @@ def plot_revolution_spectrum(revolution: OverTurns, torque: int | None = None) -
     axes.grid(alpha=0.3)
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
     about = f"orders of the transmission error, pinion torque {shown_torque(revolution.torque[torque])}"
-    style.write_title(figure, revolution.scene.title, about, _scope(revolution))
+    leaking = [
+        f"no whole turn of the {gear}: its orders leak into the orders beside them"
+        for gear in revolution.leaking_orders()
+    ]
+    style.write_title(figure, revolution.scene.title, about, _scope(revolution), *leaking)
     return figure
 
 

@@ -255,6 +255,28 @@ class OverTurns(AnalysisResult):
                 return f"{name} {turns}"
         return ""
 
+    def leaking_orders(self) -> dict[str, Array]:
+        """Orders of rotation of each gear that deviates, and of which the revolution is no whole turn.
+
+        The revolution has no such order: its amplitude leaks into the orders beside it.
+
+        Returns
+        -------
+        dict of str to (k,) array
+            By gears: for each order of ``spectrum`` the nearest order of the gear's own rotation that the revolution
+            does not have, up to half the way to the next order of ``spectrum``; NaN: none.
+        """
+        cycles = np.arange(1, (self.pitches * self.per_pitch - 1) // 2 + 1)
+        leaking = {}
+        for gear in open_turns(self.scene, self.pitches):
+            teeth = self.teeth[GEARS.index(gear)]
+            beside = np.round(cycles * teeth / self.pitches).astype(int) + np.array([[0], [-1], [1]])
+            away = np.abs(beside * self.pitches / teeth - cycles)
+            leaks = (beside > 0) & (beside * self.pitches % teeth != 0) & (away <= 0.5)
+            nearest = np.where(leaks, away, math.inf).argmin(axis=0), np.arange(len(cycles))
+            leaking[gear] = np.where(leaks[nearest], beside[nearest], math.nan)
+        return leaking
+
     def labels(self) -> dict[str, str]:
         """As of results; of part of a turn no deviation is the total one."""
         labels = super().labels()
@@ -462,10 +484,14 @@ def teeth_table(revolution: Revolution) -> Columns:
 
 
 def orders_table(revolution: OverTurns) -> Columns:
-    """A row for each order of the transmission error of a revolution: rigid, and under each torque."""
+    """A row for each order of the transmission error of a revolution: rigid, and under each torque.
+
+    Where the revolution is no whole turn of a gear that deviates, a column has the orders of this gear that leak.
+    """
     rigid = revolution.spectrum(rigid=True)
     order = f"order_of_{GEARS[revolution.counted_by]}"
     columns: dict[str, Any] = {order: rigid.order, "kind": np.array(rigid.kind, dtype=object)}
+    columns |= {f"leaking_order_of_{gear}": orders for gear, orders in revolution.leaking_orders().items()}
     columns["rigid_amplitude_um"] = rigid.amplitude
     for t, torque in enumerate(revolution.torque):
         columns[f"amplitude_at_{plain(1e-3 * torque, 6)}_Nm_um"] = revolution.spectrum(t).amplitude
