@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from loaded_tca.errors import require
 from loaded_tca.plain import plain
@@ -181,6 +182,7 @@ def plot_revolution_shares(revolution: Revolution, torque: int | None = None) ->
     for axes, gear, colour, marker in zip(teeth, GEARS, ("#009e73", "#d55e00"), "so", strict=True):
         highest = revolution.by_tooth(gear)["peak_pressure"].values[torque]
         axes.plot(np.arange(len(highest)), highest, marker + "-", color=colour, markersize=4.0, linewidth=0.8)
+        axes.xaxis.set_major_locator(MaxNLocator("auto", integer=True, steps=[1, 2, 5, 10]))
         axes.set_xlabel(f"tooth of the {gear}, from 0")
         axes.set_ylabel("peak pressure,\nhighest [MPa]")
     for axes in (curves, *teeth):
