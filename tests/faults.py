@@ -1402,10 +1402,10 @@ FAULTS = (
         f"{ARGUMENTS}test_results_share_no_memory_with_arrays_of_the_caller",
     ),
     Fault(
-        "arguments: a warning is given where arguments are checked, not where the function is called",
+        "warnings: one is given where the package notices its reason, not where the package is called",
         "errors.py",
-        "stacklevel=_with_checks(stacklevel + 1)",
-        "stacklevel=stacklevel + 1",
+        "stacklevel=_level_of_caller()",
+        "stacklevel=2",
         f"{ARGUMENTS}test_warning_is_that_of_the_line_that_calls",
     ),
     Fault(

@@ -163,7 +163,7 @@ class Sensitivities:
         change = self.tangents.rotation_change(self.growth.gaps, self.torques)
         slopes[*self.places] = -self.result.gear_pair.driving * change.T
         if self.growth.kinks is not None:
-            warn_of_edges(self.keys, slopes, self.transmission_error_kinks, self.result.um_per_rad, stacklevel=3)
+            warn_of_edges(self.keys, slopes, self.transmission_error_kinks, self.result.um_per_rad)
         return slopes
 
     @cached_property
@@ -267,9 +267,7 @@ class Sensitivities:
     @cached_property
     def line_load(self) -> Array:
         """Derivatives of the line load of each contact, (torque, position, pair, key) [N/mm per unit]."""
-        warn_of_contacts(
-            self.result, kinds.LINE_LOAD_SLOPES.sentence(), self._of_changes(self.on_cut_slices), stacklevel=3
-        )
+        warn_of_contacts(self.result, kinds.LINE_LOAD_SLOPES.sentence(), self._of_changes(self.on_cut_slices))
         slopes = self.tangents.gathered(
             line_load_slopes(grid.pressure, grid.problem.spacing) for grid in self.tangents.grids
         )
@@ -282,8 +280,8 @@ class Sensitivities:
         Of a contact at an edge or a relief start that of its largest slice pressure, or of its inner cells.
         """
         jumps = kinds.PEAK_BESIDE_JUMP.sentence()
-        warn_of_contacts(self.result, kinds.PEAK_SLOPES.sentence(), self._of_changes(self.at_corners), stacklevel=3)
-        warn_of_contacts(self.result, jumps, self._of_changes(self.beside_curvature_jumps), stacklevel=3)
+        warn_of_contacts(self.result, kinds.PEAK_SLOPES.sentence(), self._of_changes(self.at_corners))
+        warn_of_contacts(self.result, jumps, self._of_changes(self.beside_curvature_jumps))
         pair, grids, peaks = self.result.gear_pair, self.tangents.grids, self._rough_peaks
         slopes = peak_pressure_slopes(pair, [(one.contact, one.separation, one.pressure) for one in grids], peaks)
         by_pair = self._of_followed_contacts(self.tangents.gathered(slopes))
@@ -368,14 +366,14 @@ class Sensitivities:
         if any(rivals):
             others, _ = self._of_strips(([None if rival is None else rival[0] for rival in rivals], 1.0))
             lacking = [rival[1] for rival in rivals if rival is not None]
-            warn_of_strips(self.keys, by_torque, others - by_torque, lacking, stacklevel=3)
+            warn_of_strips(self.keys, by_torque, others - by_torque, lacking)
         if not all(rivals):
             alike = np.array([rival is not None for rival in rivals])[:, None]
             through_three = np.where(alike, by_torque, self._through_three_strips)
-            warn_of_strips_beside(self.keys, by_torque, through_three, stacklevel=3)
-        warn_of_face_ends(self.keys, by_torque, kinks, stacklevel=3)
-        warn_of_end_strips(result, self.keys, *self._common_face, stacklevel=3)
-        warn_of_arcs(result, self.keys, by_torque, stacklevel=3)
+            warn_of_strips_beside(self.keys, by_torque, through_three)
+        warn_of_face_ends(self.keys, by_torque, kinks)
+        warn_of_end_strips(result, self.keys, *self._common_face)
+        warn_of_arcs(result, self.keys, by_torque)
         return by_torque
 
     @property
@@ -547,7 +545,7 @@ class Sensitivities:
         says by how much.
         """
         errors, slopes = self.result.transmission_error, self.transmission_error
-        warn_of_grids(self.keys, slopes, self.transmission_error_by_grids, self.result.um_per_rad, stacklevel=3)
+        warn_of_grids(self.keys, slopes, self.transmission_error_by_grids, self.result.um_per_rad)
         changes = np.full((len(errors), len(self.keys)), np.nan)
         for t, error in enumerate(errors):
             if min(self.result.places_of_mesh, np.isfinite(error).sum()) > 1:
