@@ -174,7 +174,7 @@ class OfCases(Result):
     def _of_analysed_flanks(self, name: str) -> Array:
         """A number; NaN of flanks under the bins that load the others, where no result of the coast side has these."""
         values = self.values(name)
-        if name not in OF_LOADED_FLANKS or not self.has("reversed") or COAST[FLANK] in self.endurances:
+        if name not in OF_LOADED_FLANKS or not self.has("reversed") or COAST[FLANK] in self.modes:
             return values
         there = self.values("reversed") > 0
         return np.where(there.reshape(-1, *[1] * (values.ndim - 1)), np.nan, values)
