@@ -1,11 +1,13 @@
 """Every error and warning of the package, in one place."""
 
+import os
 import sys
 import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from math import inf
+from types import FrameType
 from typing import Any
 
 
@@ -123,26 +125,26 @@ class DamageWarning(UserWarning):
 _noted: ContextVar[tuple[tuple[list[str], bool], ...]] = ContextVar("_noted", default=())
 
 
-def give_accuracy_warning(sentence: str, stacklevel: int = 2) -> None:
-    """Give an AccuracyWarning, and tell it to whoever notes them; ``stacklevel`` counts from the caller."""
+def give_accuracy_warning(sentence: str) -> None:
+    """Give an AccuracyWarning at the line that called the package, and tell it to whoever notes them."""
     for sentences, _ in _noted.get():
         sentences.append(sentence)
     if all(given for _, given in _noted.get()):
-        warnings.warn(sentence, AccuracyWarning, stacklevel=_with_checks(stacklevel + 1))
+        warnings.warn(sentence, AccuracyWarning, stacklevel=_level_of_caller())
 
 
-CHECKS = "call_checked"
-"""Name of the function that checks the arguments of another one and calls it: it is no caller."""
+PACKAGE = os.path.dirname(__file__) + os.sep
+"""Beginning of the names of all files of the package."""
 
 
-def _with_checks(stacklevel: int) -> int:
-    """A level of the stack, as the caller counts it, when the functions are counted that check arguments of others."""
-    frame, levels = sys._getframe(1), 1
-    while levels < stacklevel and frame.f_back is not None:
-        frame = frame.f_back
-        stacklevel += frame.f_code.co_name == CHECKS
-        levels += 1
-    return stacklevel
+def _level_of_caller() -> int:
+    """Level of the stack, for who asks, of the line that called the package, whatever lies between."""
+    frame: FrameType | None = sys._getframe(1)
+    level = last = 1
+    while frame is not None:
+        last = level if frame.f_code.co_filename.startswith(PACKAGE) else last
+        frame, level = frame.f_back, level + 1
+    return last + 1
 
 
 @contextmanager

@@ -377,7 +377,7 @@ class _Works:
             raise self.fault
         for warned, error in zip(self.warnings, self.errors, strict=True):
             for sentence in warned:
-                give_accuracy_warning(sentence, stacklevel=4)
+                give_accuracy_warning(sentence)
             if error is not None:
                 raise error
         return self.results

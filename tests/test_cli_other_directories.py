@@ -5,21 +5,21 @@ import pytest
 from loaded_tca.cli import main
 
 HELD = {
-    "revolution.nc": "holds a whole revolution",
+    "revolution.nc": "holds a whole revolution, which this command does not take",
     "tribology.nc": "holds only tribology",
-    "comparison.json": "holds a comparison of results, which 'loaded-tca {}' does not take",
-    "rigid/result.nc": "holds results in rigid; give one of them: 'loaded-tca {} {}/rigid'",
+    "comparison.json": "holds a comparison of results, which this command does not take",
+    "rigid/result.nc": "holds results in rigid; give one of them: {}/rigid",
 }
 
 
-@pytest.mark.parametrize("command", ["report", "tribology"])
+@pytest.mark.parametrize("command", ["report", "tribology", "plot", "dynamics", "sensitivities"])
 @pytest.mark.parametrize("name", HELD)
 def test_directory_of_something_else_is_told(command, name, tmp_path, capsys):
     file = tmp_path / name
     file.parent.mkdir(exist_ok=True)
     file.write_bytes(b"")
     assert main([command, str(tmp_path)]) == 2
-    assert HELD[name].format(command, tmp_path) in capsys.readouterr().err
+    assert HELD[name].format(tmp_path) in capsys.readouterr().err
 
 
 def test_directory_without_anything_is_told_as_before(tmp_path, capsys):

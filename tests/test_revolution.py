@@ -1,6 +1,7 @@
 """Whole revolutions under load: limits, slopes, shares, files, refusals."""
 
 import math
+import re
 from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
@@ -11,7 +12,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca import InputError, Revolution, analyse, analyse_revolution, load_result, read_scene
 from loaded_tca import warning_kinds as kinds
-from loaded_tca.plots.revolution import plot_revolution_error
+from loaded_tca.plots.revolution import plot_revolution_error, plot_revolution_spectrum
 from loaded_tca.revolution import _Numbers, _sentences, expected_revolution_effort
 from loaded_tca.studies import Study, revolution_figures, run_study
 from loaded_tca.unloaded.tooth_cycle import REACH
@@ -151,6 +152,40 @@ def test_tooth_of_shares_that_tie_is_that_of_the_highest_pressure():
         assert figures[f"{gear}_tooth_of_largest_load_share"] == data[f"{gear}_tooth"].values[41, pair]
 
 
+def with_edges(at_edge):
+    """The small turn with 900 MPa on a pair with 7 % of the torque, 800 MPa on another one, less elsewhere."""
+    data = small_turn().dataset.copy(deep=True)
+    data.peak_pressure.values[...] = np.minimum(data.peak_pressure.values, 700.0)
+    data.on_edge.values[...] = 0
+    data.load_share.values[0, 41, 1] = 0.07
+    data.peak_pressure.values[0, [41, 8], 1] = 900.0, 800.0
+    for place in at_edge:
+        data.on_edge.values[(0, *place)] = 1
+    return replace(small_turn(), dataset=data)
+
+
+def test_peak_at_an_edge_is_told_with_its_angle_teeth_and_share():
+    turn = with_edges([(41, 1)])
+    (sentence,) = turn.findings()
+    angle = np.rad2deg(turn.pinion_angle[41])
+    assert "the peak pressure 900 MPa at 20 N m lies in slices at an edge" in sentence
+    assert float(re.search(r"pinion angle (\S+) deg", sentence)[1]) == pytest.approx(angle, rel=1e-3)  # four digits
+    pinion, wheel = (int(turn.dataset[f"{gear}_tooth"].values[41, 1]) for gear in ("pinion", "wheel"))
+    assert f"tooth {pinion} of the pinion and tooth {wheel} of the wheel, which carry 7 % of the torque" in sentence
+    assert "the largest of contacts away from edges is 800 MPa" in sentence
+    assert f"finding: {sentence}" in turn.summary().splitlines()
+    assert turn.beside_figures()["findings"] == (sentence,)
+
+
+def test_peak_away_from_edges_is_no_finding():
+    assert with_edges([(8, 1)]).findings() == ()
+
+
+def test_peak_of_contacts_that_all_reach_an_edge_says_so():
+    (sentence,) = with_edges(np.argwhere(small_turn().normal_force[0] > 0.0)).findings()
+    assert "all contacts reach an edge" in sentence
+
+
 def test_composite_deviations_are_spans_of_the_curve():
     turn = small_turn()
     curve = turn.error_um(1)
@@ -239,6 +274,32 @@ def test_revolution_that_is_not_closed_says_so():
     labels = turn.labels()
     assert labels["total_single_flank_deviation_um"] == "single flank deviation over 12 pitches [um]"
     assert "span of 12 pitches, no whole turn: " in told(plot_revolution_error(turn))
+
+
+def test_orders_of_a_gear_that_makes_no_whole_turn_leak_where_they_lie():
+    """A sine of the pinion's rotation over a turn of the wheel: its largest amplitude is at the order that names it."""
+    scene = helical({"revolution.pitches": "wheel", "revolution.positions_per_pitch": 4, "pinion.pitch.runout_um": 5.0})
+    data = small_turn().dataset
+    for own in (1, 2, 5):
+        sine = np.sin(own * data.pinion_angle.values + 0.3)
+        turn = replace(
+            small_turn(), scene=scene, dataset=data.assign(transmission_error=data.transmission_error * 0.0 + sine)
+        )
+        (leaking,) = turn.leaking_orders().values()
+        assert leaking[turn.spectrum(0).amplitude.argmax()] == own
+    assert "leaking_order_of_pinion" in turn.tables()["orders"]().values
+    assert "no whole turn of the pinion: its orders leak" in told(plot_revolution_spectrum(turn))
+
+
+def test_orders_half_way_between_those_of_the_revolution_leak():
+    scene = helical({"revolution.pitches": 12, "revolution.positions_per_pitch": 4, "wheel.pitch.runout_um": 5.0})
+    leaking = replace(small_turn(), scene=scene).leaking_orders()
+    assert_allclose(leaking["wheel"] % 2, 1.0)  # 12 pitches of 24 have the even orders
+
+
+def test_whole_turns_have_no_leaking_orders():
+    assert small_turn().leaking_orders() == {}
+    assert "leaking" not in " ".join(small_turn().tables()["orders"]().values)
 
 
 def test_progress_is_told_to_its_end():

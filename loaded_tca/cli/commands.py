@@ -30,7 +30,6 @@ from loaded_tca.cli.inputs import (
     index_of_position,
     index_of_torque,
     names_of_results,
-    require_result,
     result_file,
     result_of,
     scene_of,
@@ -210,7 +209,7 @@ def tribology(options: argparse.Namespace) -> None:
     from loaded_tca.plots import tribology_figures
 
     speed = {} if options.speed is None else {"operation.pinion_speed_rpm": options.speed[0]}
-    result, directory = _changed_result(options, "tribology", _is_of_tribology, OF_TRIBOLOGY, speed)
+    result, directory = _changed_result(options, _is_of_tribology, OF_TRIBOLOGY, speed)
     evaluated = result.tribology(options.speed)
     written = _written(evaluated, directory, tribology_figures(evaluated))
     each = range(len(options.speed or [None]))
@@ -223,8 +222,8 @@ def rating(options: argparse.Namespace) -> None:
     rated: Rating | StageRating | DoubleHelicalRating
     kind = _joined_kind(result_file(options.result))
     if kind is None:
-        result, directory = _changed_result(options, "rating", _is_of_rating, OF_RATING)
-        rated = result.rating(coast=None if options.coast is None else _coast_of(options.coast, "rating"))
+        result, directory = _changed_result(options, _is_of_rating, OF_RATING)
+        rated = result.rating(coast=None if options.coast is None else _coast_of(options.coast))
     else:
         require((options.coast is None, f"--coast: not allowed with {kind.FILE}; allowed with the result of one pair"))
         result, directory = _changed_joined(options, kind)
@@ -232,14 +231,11 @@ def rating(options: argparse.Namespace) -> None:
     print_summary(rated.summary(), _rating_files(rated, directory))
 
 
-def _coast_of(place: Path, command: str) -> MeshCycle:
-    """Result of a coast side, which the rating of a command takes the flanks of reversed bins from."""
+def _coast_of(place: Path) -> MeshCycle:
+    """Result of a coast side, which a rating takes the flanks of reversed bins from."""
     from loaded_tca.results.mesh_cycle import MeshCycle
 
-    path = result_file(place)
-    if place.is_dir():
-        require_result(place, path, f"loaded-tca {command} --coast")
-    return MeshCycle.load(path)
+    return MeshCycle.load(result_file(place))
 
 
 def _joined_kind(path: Path) -> type[StageResult | DoubleHelicalResult] | None:
@@ -298,7 +294,6 @@ def _show_rated(
 
 def _changed_result(
     options: argparse.Namespace,
-    command: str,
     is_allowed: Callable[[str], bool],
     allowed: str,
     defaults: Mapping[str, Any] = {},
@@ -308,8 +303,6 @@ def _changed_result(
     from loaded_tca.scene.section import writing_at
 
     path = result_file(options.result)
-    if options.result.is_dir():
-        require_result(options.result, path, f"loaded-tca {command}")
     result = MeshCycle.load(path)
     directory = options.out or directory_of(path)
     check_place(directory)
@@ -624,7 +617,7 @@ def report(options: argparse.Namespace) -> None:
     check_files([out], path)
     coast = None
     if options.coast is not None:
-        coast = _coast_of(options.coast, "report")
+        coast = _coast_of(options.coast)
         check_files([out], result_file(options.coast))
     subject = subject_of_report(path)
     date = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")

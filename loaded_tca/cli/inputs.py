@@ -170,7 +170,7 @@ def tolerances_of(options: argparse.Namespace, scene: Scene) -> dict[str, float]
     return usual | {key: tolerance for key, tolerance in given if tolerance is not None}
 
 
-def require_result(directory: Path, path: Path, command: str) -> None:
+def _refuse_what_else_it_holds(directory: Path) -> None:
     """Refuse a directory without a result that holds something else, in words that say what to give instead."""
     from loaded_tca.double_helical import DoubleHelicalRevolution
     from loaded_tca.output.result_files import RESULT
@@ -178,21 +178,19 @@ def require_result(directory: Path, path: Path, command: str) -> None:
     from loaded_tca.results import Revolution
     from loaded_tca.tribology import Tribology
 
-    if path.exists():
-        return
     parts = [one.name for one in sorted(directory.iterdir()) if (one / RESULT).is_file()]
     for kind in (Revolution, DoubleHelicalRevolution):
         if (directory / kind.FILE).is_file():
             raise InputError(
-                f"{directory}: holds a whole revolution, which '{command}' does not take: the numbers are in "
+                f"{directory}: holds a whole revolution, which this command does not take: the numbers are in "
                 f"{kind.JSON} and the tables; give the directory of 'loaded-tca run'"
             )
     if parts:
-        these = " or ".join(f"'{command} {directory / name}'" for name in parts)
+        these = " or ".join(f"{directory / name}" for name in parts)
         raise InputError(f"{directory}: holds results in {', '.join(parts)}; give one of them: {these}")
     if (directory / COMPARISON_DATA).is_file():
         raise InputError(
-            f"{directory}: holds a comparison of results, which '{command}' does not take: the numbers are in "
+            f"{directory}: holds a comparison of results, which this command does not take: the numbers are in "
             f"{COMPARISON} and {COMPARISON_DATA}; give the directory of one of the results, or of several to "
             "'loaded-tca report'"
         )
@@ -205,13 +203,28 @@ def require_result(directory: Path, path: Path, command: str) -> None:
 
 def result_file(path: Path) -> Path:
     """The file of a result that is named by itself or by its directory; that of another kind its reader refuses."""
+    return _file_in(path)
+
+
+def _file_in(path: Path, *others: str) -> Path:
+    """A file itself, or in a directory that of a result of any kind, or one of these names.
+
+    Raises
+    ------
+    InputError
+        If the directory holds something else; of one with nothing at all the reader says so.
+    """
     from loaded_tca.double_helical.result import PAIR_FILE
     from loaded_tca.output.result_files import RESULT
     from loaded_tca.stages.result import STAGE_FILE
 
-    if not os.path.isdir(path) or (path / RESULT).exists():
-        return path / RESULT if os.path.isdir(path) else path
-    return path / next((name for name in (STAGE_FILE, PAIR_FILE) if (path / name).is_file()), RESULT)
+    if not os.path.isdir(path):
+        return path
+    for name in (RESULT, STAGE_FILE, PAIR_FILE, *others):
+        if (path / name).is_file():
+            return path / name
+    _refuse_what_else_it_holds(path)
+    return path / RESULT
 
 
 def directory_of(file: Path) -> Path:
@@ -225,16 +238,7 @@ def directory_of(file: Path) -> Path:
 
 def file_of_report(path: Path) -> Path:
     """The file of what has a report, a result, stage, study or design, named by itself or by its directory."""
-    from loaded_tca.double_helical.result import PAIR_FILE
-    from loaded_tca.output.result_files import RESULT
-    from loaded_tca.stages.result import STAGE_FILE
-
-    result, *others = (path / name for name in (RESULT, STAGE_FILE, PAIR_FILE, STUDY_FILE, DESIGN_FILE))
-    if not os.path.isdir(path):
-        return path
-    found = next((one for one in (result, *others) if one.is_file()), result)
-    require_result(path, found, "loaded-tca report")
-    return found
+    return _file_in(path, STUDY_FILE, DESIGN_FILE)
 
 
 def subject_of_report(path: Path) -> MeshCycle | StageResult | DoubleHelicalResult | xarray.Dataset | DesignResult:

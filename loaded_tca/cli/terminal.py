@@ -9,7 +9,6 @@ import shutil
 import sys
 import textwrap
 import warnings
-from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
@@ -247,14 +246,14 @@ _CAUGHT: ContextVar[Sequence[warnings.WarningMessage]] = ContextVar("caught", de
 """Warnings that the command has raised so far."""
 
 
-def _messages() -> Counter[str]:
-    """Warnings that the command has raised so far, in one line each, and how many times."""
-    return Counter(" ".join(str(entry.message).split()) for entry in _CAUGHT.get())
+def _messages() -> dict[str, None]:
+    """Warnings that the command has raised so far, in one line each, those that are alike once."""
+    return dict.fromkeys(" ".join(str(entry.message).split()) for entry in _CAUGHT.get())
 
 
 @contextmanager
 def warnings_in_one_line_each() -> Iterator[None]:
-    """Collect warnings and tell each once, with its count, also if an error follows."""
+    """Collect warnings and tell each once, also if an error follows: how often code comes by says nothing of gears."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         warnings.simplefilter("ignore", ResourceWarning)  # files that an interrupt leaves open
@@ -262,6 +261,6 @@ def warnings_in_one_line_each() -> Iterator[None]:
         try:
             yield
         finally:
-            for message, count in _messages().items():
-                say(f"warning: {message}" + (f" ({count} times)" if count > 1 else ""))
+            for message in _messages():
+                say(f"warning: {message}")
             _CAUGHT.reset(before)

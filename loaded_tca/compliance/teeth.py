@@ -66,7 +66,7 @@ def require_teeth(pair: GearPair, way_out: str = TEETH_DO_NOT_BEND) -> None:
         _ = pair.rigid_bores
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         if gear.sharp.flank is not gear.nominal_flank and (fault := _fault_of(gear)):
-            give_accuracy_warning(kinds.UNMODIFIED_TOOTH.sentence(gear=name, fault=fault), stacklevel=3)
+            give_accuracy_warning(kinds.UNMODIFIED_TOOTH.sentence(gear=name, fault=fault))
 
 
 def warn_of_teeth(pair: GearPair) -> None:
@@ -84,7 +84,7 @@ def warn_of_teeth(pair: GearPair) -> None:
     """
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         if fault := _fault_of(gear):
-            give_accuracy_warning(kinds.NO_TOOTH.sentence(gear=name, fault=fault), stacklevel=3)
+            give_accuracy_warning(kinds.NO_TOOTH.sentence(gear=name, fault=fault))
 
 
 def _fault_of(gear: Gear) -> GeometryError | None:

@@ -253,7 +253,7 @@ def double_helical_rating_of(result: DoubleHelicalResult, *, warn: bool = True) 
     arrays |= {"whole_flank_safety": whole.flank_safety, "whole_root_safety": whole.root_safety}
     sentences = [f"half {name}: {sentence}" for name, rating in loaded.items() for sentence in rating.warnings or ()]
     for sentence in sentences if warn else ():
-        give_accuracy_warning(sentence, stacklevel=3)
+        give_accuracy_warning(sentence)
     about: dict[str, Any] = {"version": whole.version, "warnings": "\n".join(sentences)}
     dataset = kind.dataset_of(arrays, {"gear": GEARS, "mode": whole.modes}, **about)
     half_a, half_b = ratings

@@ -218,7 +218,7 @@ class SettingsProblem:
             sentence = kinds.WEAK_SETTINGS.sentence(
                 effect=plain(MICROMETRES * effect, 2), changes=self._named(ways[-1], sizes)
             )
-            give_accuracy_warning(sentence, stacklevel=4)
+            give_accuracy_warning(sentence)
         return weakest / sizes * self.factors, effect
 
     def _named(self, way: Array, sizes: Array) -> str:

@@ -331,5 +331,5 @@ def modified(
         amount = getattr(modifications, name) or 0.0  # None: as at both ends
         if abs(amount) > LARGEST_AMOUNT:
             message = kinds.UNIT.sentence(key=f"{owner}.modifications.{name}", amount=amount, most=LARGEST_AMOUNT)
-            give_accuracy_warning(message, stacklevel=2)
+            give_accuracy_warning(message)
     return flank

@@ -88,7 +88,7 @@ class StructuredGrid:
                 left = " and ".join(
                     f"{100.0 * max(end, 0.0):.0f} % at the {edge}" for end, edge in zip(ends, names, strict=True)
                 )
-                give_accuracy_warning(kinds.UNCOVERED.sentence(direction=name, left=left), stacklevel=3)
+                give_accuracy_warning(kinds.UNCOVERED.sentence(direction=name, left=left))
 
     def _too_coarse(self, degrees: tuple[int, int], counts: tuple[int, int]) -> list[str]:
         problems = []
@@ -304,7 +304,7 @@ def fitted(flank: Flank, points: tuple[int, int] = DEFAULT_POINTS, degree: int =
     check = FitError.of(bare.distance_to(flank, *between))
     if check.largest > FIT_TOLERANCE:
         message = kinds.COARSE_FIT.sentence(points=f"{points[0]} x {points[1]}", error=check)
-        give_accuracy_warning(message, stacklevel=2)
+        give_accuracy_warning(message)
     return SplineFlank(region, spline, FitError.of(bare.distance_to(flank, rho, z)), check)
 
 
@@ -415,7 +415,7 @@ def _warn_if_swinging(nominal: Flank, excess: Array, spline: TensorSpline, smoot
     beyond, span = max(known.min() - splined.min(), splined.max() - known.max()), float(np.ptp(excess))
     if beyond > max(SWING * span, FIT_TOLERANCE):
         from_to = (f"{plain(1e3 * one.min(), 3)} to {plain(1e3 * one.max(), 3)} um" for one in (excess, splined))
-        give_accuracy_warning(kinds.SWINGS.sentence(points=next(from_to), flank=next(from_to)), stacklevel=3)
+        give_accuracy_warning(kinds.SWINGS.sentence(points=next(from_to), flank=next(from_to)))
 
 
 def pitch_point(flank: Flank) -> tuple[Array, Array]:

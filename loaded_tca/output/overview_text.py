@@ -94,9 +94,9 @@ def _lines(sections: Mapping[str, list[Row]]) -> Iterator[str]:
 
 
 def _line(row: Row) -> list[str]:
-    """A line; cells as wide as their column or wider keep two blanks before them."""
+    """A line; cells that fill their column keep two blanks before them."""
     label, *cells = row
-    return [f"{label:<{LABEL}}" + "".join(f"{cell:>{CELL}}" if len(cell) < CELL else f"  {cell}" for cell in cells)]
+    return [f"{label:<{LABEL}}" + "".join(f"{cell:>{CELL}}" if len(cell) < CELL - 1 else f"  {cell}" for cell in cells)]
 
 
 def _objects(sections: Mapping[str, list[Row]]) -> dict[str, dict[str, Any]]:

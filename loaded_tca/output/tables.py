@@ -109,6 +109,7 @@ def _comparison_json(comparison: Comparison) -> str:
         "torques": [
             {
                 "pinion_torque_Nm": 1e-3 * float(torque),
+                "findings": comparison.findings(float(torque)),
                 "figures": {
                     figure: told(k, index, figure) for index, figure in enumerate(figures.figure.values.tolist())
                 },
@@ -219,7 +220,8 @@ def _cell(value: float) -> str:
 
 SENSITIVITY_DATA, SENSITIVITIES = "sensitivities.nc", "sensitivities.csv"
 """Names of the two files."""
-WIDTH = 15
+APART = 2
+"""Blanks between columns, at least: a single one does not part cells where lines go on below themselves."""
 
 
 @checked
@@ -348,7 +350,8 @@ def slopes_text(
         ("  all of them, independent", [_digits(value, sign="") for value in together]),
     ]
     labels = max(len(label) for label, _ in rows)
-    lines = [f"{label:<{labels}}" + "".join(f"{cell:>{WIDTH}}" for cell in cells) for label, cells in rows]
+    width = APART + max(len(cell) for _, cells in rows for cell in cells)
+    lines = [f"{label:<{labels}}" + "".join(f"{cell:>{width}}" for cell in cells) for label, cells in rows]
     return "\n".join([title, *(line.rstrip() for line in lines)])
 
 

@@ -26,6 +26,7 @@ from matplotlib.figure import Figure
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import require
+from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.plots.style import DISTINCT_COLOURS, MARKERS
 from loaded_tca.results.key_figures import mean_over_a_pitch
@@ -166,16 +167,21 @@ def _draw(
 
     The last axis is that of the places; values (sample, ...) of a design are changed before.
     """
-    for label, of_design, (colour, marker) in zip(_names(design), design[name], _styles(), strict=False):
+    names, is_one = _names(design), len(places) == 1
+    if is_one:  # the designs stand side by side
+        axes.set_xticks(places, [plain(float(places[0]), 6)])
+        axes.set_xlim(places[0] - len(names), places[0] + len(names))
+    for k, (label, of_design, (colour, marker)) in enumerate(zip(names, design[name], _styles(), strict=False)):
+        at = places + (k - 0.5 * (len(names) - 1)) * is_one
         dims = [dim for dim in ("sample", "torque", "position") if dim in of_design.dims]
         values = changed(of_design.transpose(*dims).values)
         if len(values) > 1:
             low, high = values.min(axis=0), values.max(axis=0)
             border = to_rgba(colour, 0.6)  # bands that lie over each other are told apart by it
-            axes.fill_between(places, low, high, facecolor=to_rgba(colour, 0.2), edgecolor=border, linewidth=0.8)
-            if len(places) == 1:  # a band needs two
-                axes.vlines(places, low, high, color=colour, alpha=0.4, linewidth=4.0)
-        axes.plot(places, values.mean(axis=0), color=colour, marker=marker, markersize=4.0, label=label)
+            axes.fill_between(at, low, high, facecolor=to_rgba(colour, 0.2), edgecolor=border, linewidth=0.8)
+            if is_one:  # a band needs two
+                axes.vlines(at, low, high, color=colour, alpha=0.4, linewidth=4.0)
+        axes.plot(at, values.mean(axis=0), color=colour, marker=marker, markersize=4.0, label=label)
     axes.grid(alpha=0.3)
 
 

@@ -85,9 +85,9 @@ def plot_first_look(scene: Scene) -> Figure:
     for k, (_, panels) in enumerate(rows):
         for n, draw in enumerate(panels):
             draw(figure.add_subplot(grid[k, :] if len(panels) == 1 else grid[k, n]))
-    if isinstance(scene, CylindricalScene):
-        of_teeth = figure.axes[0].get_legend_handles_labels()
-        figure.legend(*of_teeth, loc="outside lower center", ncols=4, fontsize="x-small")  # within no place is free
+    legends = figure.axes[:: len(figure.axes) - 1] if isinstance(scene, CylindricalScene) else figure.axes[-1:]
+    handles = [handle for axes in legends for handle in axes.get_legend_handles_labels()[0]]
+    figure.legend(handles=handles, loc="outside lower center", ncols=4, fontsize="x-small")  # within no place is free
     what = f"geometry before any contact, flanks of half {HALVES[0]}" if halves else "geometry before any contact"
     write_title(figure, scene.title, what, *numbers)
     return figure
@@ -213,7 +213,6 @@ def _flanks(scene: Scene, pair: GearPair) -> list[Callable[[Axes], None]]:
             draw_flank(axes, scene.flank_names[member], flank, active)
             place = ToPicture(pair, gear)(points)
             axes.plot(*place.T, ".-", color=ACCENT, markersize=4.0, label="contact points without load")
-            axes.legend(fontsize="x-small", loc="best")
 
         return draw
 

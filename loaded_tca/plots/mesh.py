@@ -233,7 +233,7 @@ def _draw_path(axes: Axes, mesh: CylindricalMesh | InternalMesh, side: float) ->
             (where[0], where[1]),
             (11.0 * across[0], 11.0 * across[1]),
             textcoords="offset points",
-            ha="center",
+            ha="center" if name[0] != "T" else "left" if where[0] < 0.0 else "right",  # T1 and T2 may be at the border
             va="center",
             zorder=6.0,
             annotation_clip=True,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from operator import methodcaller
 
 import numpy as np
@@ -78,10 +79,12 @@ def plot_damage(rating: OfCases) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Of a spectrum of more than 40 torques, bins stand together in 40 equal steps of torque. Where damages differ by
-        more than a decade, their axis is logarithmic, down to a millionth of the largest.
+        Of a spectrum of more than 40 torques, bins stand together in 40 equal steps of torque. Where damages of a kind
+        of failure differ by more than a decade, the axes of all panels with damage are logarithmic, each down to a
+        millionth of its largest.
     """
     figure, panels = _panels(rating)
+    drawn: list[Array] = []
     for n, (mode, axes) in enumerate(zip(rating.modes, panels, strict=True)):
         places, width, damage = _bars(rating, rating.damage[:, :, n])
         step = 0.9 * width / len(rating.MEMBERS)
@@ -99,10 +102,11 @@ def plot_damage(rating: OfCases) -> Figure:
         if len(places) == 1:  # bars beside it would be at torques of their own
             axes.set_xticks(places, [plain(places[0], 6)])
         axes.set(xlabel=f"{label} [N m]", ylabel=f"damage in {plain(rating.life_required, 6)} h [-]")
-        _scale(axes, damage[np.isfinite(damage)])
+        drawn.append(damage[np.isfinite(damage)])
         if not (damage > 0.0).any():
             style.tell(axes, "no damage: stresses below the end of the curve")
         _finish(axes, WORDS[mode])
+    _scale(panels, drawn)
     several = isinstance(rating, OfSpectrum)
     what = f"damage of {_cases(rating)}" if several else "damage under each torque alone"
     return _finished(figure, panels, rating, what)
@@ -114,15 +118,20 @@ def _cases(rating: OfCases) -> str:
     return f"{len(rating.torque)} {kind}{'s' * (len(rating.torque) > 1)}"
 
 
-def _scale(axes: Axes, damage: Array) -> None:
-    """An axis on which bars of all sizes can be read, but for those that are nothing beside the largest."""
-    largest = float(damage.max(initial=0.0))
-    least = float(damage[damage > LEAST_BAR * largest].min(initial=largest))
-    if least > OF_ONE_DECADE * largest or largest == 0.0:
-        axes.set_ylim(bottom=0.0)
-    else:
-        axes.set_yscale("log")
-        axes.set_ylim(0.5 * least, 2.0 * largest)
+def _scale(panels: Sequence[Axes], damages: Sequence[Array]) -> None:
+    """Axes of one kind, on which bars of all sizes can be read, but for those that are nothing beside the largest."""
+    largest = [float(damage.max(initial=0.0)) for damage in damages]
+    least = [
+        float(damage[damage > LEAST_BAR * most].min(initial=most))
+        for damage, most in zip(damages, largest, strict=True)
+    ]
+    is_wide = any(0.0 < low <= OF_ONE_DECADE * high for low, high in zip(least, largest, strict=True))
+    for axes, low, high in zip(panels, least, largest, strict=True):
+        if not is_wide or high == 0.0:
+            axes.set_ylim(bottom=0.0)
+        else:
+            axes.set_yscale("log")
+            axes.set_ylim(0.5 * low, 2.0 * high)
 
 
 def _panels(rating: OfCases) -> tuple[Figure, list[Axes]]:

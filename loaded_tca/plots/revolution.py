@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from loaded_tca.errors import require
 from loaded_tca.plain import plain
@@ -81,6 +82,8 @@ def plot_revolution_error(revolution: OverTurns) -> Figure:
 def plot_revolution_spectrum(revolution: OverTurns, torque: int | None = None) -> Figure:
     """Orders of the transmission error, mesh orders, sidebands and orders of rotation told apart.
 
+    The title says which gear's orders are no orders of the revolution.
+
     Parameters
     ----------
     revolution : Revolution
@@ -121,7 +124,11 @@ def plot_revolution_spectrum(revolution: OverTurns, torque: int | None = None) -
     axes.grid(alpha=0.3)
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
     about = f"orders of the transmission error, pinion torque {shown_torque(revolution.torque[torque])}"
-    style.write_title(figure, revolution.scene.title, about, _scope(revolution))
+    leaking = [
+        f"no whole turn of the {gear}: its orders leak into the orders beside them"
+        for gear in revolution.leaking_orders()
+    ]
+    style.write_title(figure, revolution.scene.title, about, _scope(revolution), *leaking)
     return figure
 
 
@@ -175,6 +182,7 @@ def plot_revolution_shares(revolution: Revolution, torque: int | None = None) ->
     for axes, gear, colour, marker in zip(teeth, GEARS, ("#009e73", "#d55e00"), "so", strict=True):
         highest = revolution.by_tooth(gear)["peak_pressure"].values[torque]
         axes.plot(np.arange(len(highest)), highest, marker + "-", color=colour, markersize=4.0, linewidth=0.8)
+        axes.xaxis.set_major_locator(MaxNLocator("auto", integer=True, steps=[1, 2, 5, 10]))
         axes.set_xlabel(f"tooth of the {gear}, from 0")
         axes.set_ylabel("peak pressure,\nhighest [MPa]")
     for axes in (curves, *teeth):

@@ -178,6 +178,13 @@ SENSITIVITY_PICTURES = "tornado", "sensitivity_curves", "transmission_error_band
 
 WITHOUT_MOUNTING = "mounting errors move whole gears: they turn the wheel by a constant, and are left out here"
 """Why a panel has fewer keys than the others."""
+WITH_MOUNTING = (
+    "bands on the left contain mounting errors, which turn the wheel by a constant; the tornado leaves them out of the "
+    "mean transmission error"
+)
+"""Why the absolute transmission error scatters more than its mean does in the tornado."""
+MOUNTING = "mounting."
+"""Beginning of the keys of mounting errors."""
 
 
 def sensitivity_pictures(
@@ -239,7 +246,7 @@ def plot_tornado(
         raise InputError(f"nothing is under load with {style.torque_label(result, torque)}: no derivatives")
     now = key_figures(result, torque)
     labels = [_with_tolerance(key, one) for key, one in zip(sensitivities.keys, spread.tolist(), strict=True)]
-    rigid = np.array([key.startswith("mounting.") for key in sensitivities.keys])
+    rigid = np.array([key.startswith(MOUNTING) for key in sensitivities.keys])
     left_out_of_mean = bool(rigid.any()) and not rigid_motions and not rigid.all() and MEAN in chosen
     if left_out_of_mean:
         changes[MEAN] = np.where(rigid, np.nan, changes[MEAN])
@@ -385,7 +392,9 @@ def plot_transmission_error_band(
     figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize="small")
     under = loads(result, len(shown_torques)) if torque is None else load(result, torque)
     what = f"scatter by the tolerances of {len(given)} key{'s' * (len(given) > 1)}, to first order"
-    style.set_title(figure, result, f"{what}, {under}", range_of_positions(result))
+    rigid = [key.startswith(MOUNTING) for key in given]
+    more = [WITH_MOUNTING] if any(rigid) and not all(rigid) else []
+    style.set_title(figure, result, f"{what}, {under}", range_of_positions(result), *more)
     return figure
 
 

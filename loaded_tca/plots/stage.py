@@ -150,7 +150,7 @@ def plot_stage_sun_orbit(result: StageResult) -> Figure:
     for planet, angle in enumerate(result.planet_angle.tolist()):
         axes.annotate(
             f"planet {planet}" if at_rest else f"towards planet {planet}",
-            (0.5 + 0.4 * np.cos(angle), 0.5 + 0.43 * np.sin(angle)),
+            (0.5 + 0.35 * np.cos(angle), 0.5 + 0.43 * np.sin(angle)),
             xycoords="axes fraction",
             ha="center",
             va="center",

@@ -242,11 +242,16 @@ def plot_study_scatter_matrix(
 
 
 def _draw_bars(axes: Axes, values: Array, most: int = MOST_BARS, whole: bool = False) -> None:
-    """Histogram of finite values, its bars after Freedman and Diaconis; of few whole numbers a bar each."""
+    """Histogram of finite values, its bars after Freedman and Diaconis; of few numbers in equal steps a bar each."""
     if not values.size:
         return
     low, high = float(values.min()), float(values.max())
-    if whole and high - low < most:
+    steps = np.diff(np.unique(values))
+    is_even = 0 < steps.size < most and np.ptp(steps) <= SAME * (high - low)
+    if is_even and steps.min() > SAME * max(abs(low), abs(high)):
+        half = 0.5 * float(steps.mean())
+        bins, low, high = steps.size + 1, low - half, high + half
+    elif whole and high - low < most:
         bins, low, high = round(high - low) + 1, low - 0.5, high + 0.5
     else:
         least = SAME * max(abs(low), abs(high)) or 1.0

@@ -70,7 +70,7 @@ def rating_of(
     about: dict[str, Any] = {"version": result.version, "warnings": "\n".join(sentences)}
     dataset = kind.dataset_of(arrays, {"gear": GEARS, "mode": [*endurances]}, **about)
     for sentence in sentences if warn else ():
-        give_accuracy_warning(sentence, stacklevel=3)
+        give_accuracy_warning(sentence)
     return kind(result, dataset, inputs, endurances, notes)
 
 

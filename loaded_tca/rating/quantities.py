@@ -160,11 +160,17 @@ UNDER_LOAD = (
     *(f"local_{name}" for name in ("flank_radius", "flank_axial", "root_angle", "root_axial", "stress_ratio", "Y_M")),
 )
 """Numbers that nothing has without a torque: those of idle bins and idle halves are not known."""
+OF_LOADED_FLANKS = (
+    "sigma_H",
+    "flank_safety",
+    *(f"local_flank_{name}" for name in ("stress", "radius", "axial", "safety")),
+)
+"""Numbers of the flanks that a load case presses on: not known of those that are not analysed."""
 SPECTRUM_NUMBERS: dict[str, Number] = {
     "torque": NUMBERS["torque"],
     "pinion_speed": Number(CASE, "rpm", "pinion speed", label="pinion speed"),
     "hours": Number(CASE, "h", "hours in the required life", column="hours", label="hours in the required life"),
-    "reversed": Number(CASE, "1", "whether the torque is reversed", label="reversed: 1"),
+    "reversed": Number(CASE, "1", "whether the torque is reversed", label="torque reversed (1: yes, 0: no)"),
     **{name: number for name, number in NUMBERS.items() if name not in ("torque", "life_hours")},
     "miner_sum": Number(OF_SPECTRUM, "1", "damage of all bins in the required life at the required safety"),
     "life_hours": Number(OF_SPECTRUM, "h", "life under the spectrum at the required safety", column="life_h"),

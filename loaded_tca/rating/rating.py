@@ -16,7 +16,7 @@ from loaded_tca.plain import plain
 from loaded_tca.rating.findings import findings
 from loaded_tca.rating.inputs import CommonInputs
 from loaded_tca.rating.lives import COAST, FLANK, LOCAL_FLANK, LOCAL_ROOT, MODES, ROOT, Endurances, OfGears
-from loaded_tca.rating.quantities import CASE, NUMBERS, OF_GEARS, OF_MODES, OF_SPECTRUM
+from loaded_tca.rating.quantities import CASE, NUMBERS, OF_GEARS, OF_LOADED_FLANKS, OF_MODES, OF_SPECTRUM
 from loaded_tca.results.figure import Figure, Figures, labelled
 from loaded_tca.results.files import RATING
 from loaded_tca.results.numbers import CycleNumbers
@@ -151,13 +151,16 @@ class OfCases(Result):
         return super().has(name) or (mode in COAST.values() and mode in self.modes)
 
     def figure_arrays(self) -> dict[str, Array]:
-        """Return the key figures as arrays (case,) by their names; of what all bins do together the same for each."""
+        """Return the key figures as arrays (case,) by their names; of what all bins do together the same for each.
+
+        NaN: not known, as the stress of flanks that are not analysed, which reversed bins load.
+        """
         columns, count = {}, len(self.torque)
         for name, number in self.NUMBERS.items():
             if not self.has(name):
                 continue
             head = number.head(name)
-            values = number.factor(head) * self.values(name)
+            values = number.factor(head) * self._of_analysed_flanks(name)
             if number.dims == CASE:
                 columns[head] = values
             elif number.dims == OF_GEARS:
@@ -167,6 +170,14 @@ class OfCases(Result):
                 for n, mode in enumerate(self.modes):
                     columns |= {_head(head, gear, mode): whole[:, place, n] for place, gear in enumerate(self.MEMBERS)}
         return {head: np.asarray(values, dtype=float) for head, values in columns.items()}
+
+    def _of_analysed_flanks(self, name: str) -> Array:
+        """A number; NaN of flanks under the bins that load the others, where no result of the coast side has these."""
+        values = self.values(name)
+        if name not in OF_LOADED_FLANKS or not self.has("reversed") or COAST[FLANK] in self.modes:
+            return values
+        there = self.values("reversed") > 0
+        return np.where(there.reshape(-1, *[1] * (values.ndim - 1)), np.nan, values)
 
     def key_figures(self) -> tuple[dict[str, float], ...]:
         """Return the figures of each load case, by names that end in their unit; NaN: not known."""

@@ -75,7 +75,7 @@ def rating_slopes(rating: Rating, sensitivities: Sensitivities) -> xarray.Datase
     growth = _growth(inputs, sensitivities)
     held = isinstance(inputs, RatingInputs) and inputs.rating.transverse_load_factor == ANALYSIS
     if held and (rating.K_Halpha == inputs.loads.transverse_load_factor).any():  # not at a bound of the standard
-        give_accuracy_warning(kinds.TRANSVERSE_HELD.sentence(), stacklevel=4)
+        give_accuracy_warning(kinds.TRANSVERSE_HELD.sentence())
     columns = []
     for number, key in enumerate(keys):
         part = {name: slopes[..., number] for name, slopes in growth.items()}
@@ -169,7 +169,7 @@ def _pressure_slopes(sensitivities: Sensitivities) -> Array:
             kinds.PEAK_BESIDE_JUMP: sensitivities.beside_curvature_jumps,
         }
         for kind, places in marks.items():
-            warn_of_contacts(result, kind.sentence(), places & deciding, stacklevel=5)
+            warn_of_contacts(result, kind.sentence(), places & deciding)
     return slopes[0]
 
 
@@ -184,7 +184,7 @@ def _warn_of_kinks(figure: str, keys: Sequence[str], slopes: Array, lacking: Arr
         worst = int(sizes.argmax())
         words = {"key": keys[worst], "count": np.count_nonzero(sizes > TOLD), "keys": len(keys)}
         sentence = kinds.CONTACTS_ALIKE.sentence(figure=figure, lacking=lacking.min(), size=sizes[worst], **words)
-        give_accuracy_warning(sentence, stacklevel=5)
+        give_accuracy_warning(sentence)
 
 
 def _of_contact(under: Sensitivities, place: tuple[int, int, int]) -> Array:

@@ -53,6 +53,7 @@ def comparison_content(comparison: Comparison, torque: float | None = None) -> d
         "left_out": [f"{name}: {', '.join(some)} N m" for name, some in comparison.left_out.items()],
         "differing": differing_table(comparison),
         "key_figures": [table for k in torques for table in key_figure_tables(comparison, k)],
+        "findings": [sentence for k in torques for sentence in comparison.findings(float(comparison.torque[k]))],
         "all_torques": len(torques) == len(comparison.torque),
         "sizes": SIZES,
         "beyond": BEYOND,

@@ -23,6 +23,7 @@ from loaded_tca.plots.style import position_label, torque_label
 from loaded_tca.plots.three_d import DRAWN, LIFT
 from loaded_tca.reports.arrays import Block, finite, scaled
 from loaded_tca.reports.result_page import result_tables
+from loaded_tca.results.key_figures import mean_over_a_pitch
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.numbers import index_or_largest
 from loaded_tca.results.pressure_map import PressureMap
@@ -86,6 +87,10 @@ def _panels(result: MeshCycle) -> Iterator[dict[str, Any]]:
         "under load": um * result.transmission_error,
         "unloaded": um * np.broadcast_to(result.unloaded_transmission_error, result.transmission_error.shape),
     }
+    about_mean = {
+        name: np.array([curve - mean_over_a_pitch(curve) for curve in values]) for name, values in error.items()
+    }
+    yield _panel("Transmission error less its mean", "µm", about_mean, ", as a length at the wheel's base circle")
     yield _panel("Transmission error", "µm", error, ", as a length at the wheel's base circle")
     yield _panel("Share of the torque", "%", _by_pair(result, 100.0 * result.load_share))
     yield _panel("Peak pressure", "MPa", _by_pair(result, result.peak_pressure))

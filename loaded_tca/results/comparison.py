@@ -17,6 +17,7 @@ from loaded_tca.results.figures import FIGURES, declared
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.summary import kind_of_edge, shown, without_rounding
 from loaded_tca.results.tables import Columns, frame_of
+from loaded_tca.results.warnings import peak_finding
 from loaded_tca.scene.keys import shown as shown_value
 from loaded_tca.scene.section import as_table
 
@@ -172,6 +173,21 @@ class Comparison(InNotebooks):
         others = {name: [one for one in _torques(result) if one not in shared] for name, result in self.results.items()}
         return {name: torques for name, torques in others.items() if torques}
 
+    def findings(self, torque: float | None = None) -> tuple[str, ...]:
+        """Return sentences on peak pressures that lie at an edge, on a pair that carries less than a tenth of a torque.
+
+        Such a peak pressure is compared with that of other results all the same, and its difference is none of the
+        pairs that carry the load: each sentence names the result, and has the peak pressure of these pairs.
+
+        Parameters
+        ----------
+        torque : float [N mm], optional
+            Default: the largest that all results have.
+        """
+        row = self.indices[self.index_of(torque)].tolist()
+        told = {name: peak_finding(one, k) for (name, one), k in zip(self.results.items(), row, strict=True)}
+        return tuple(f"{name}: {sentence}" for name, sentence in told.items() if sentence)
+
     def index_of(self, torque: float | None = None) -> int:
         """Return the index of a torque [N mm] among the shared ones; default: that of the largest.
 
@@ -216,8 +232,9 @@ class Comparison(InNotebooks):
         if left := [f"{name} {', '.join(torques)}" for name, torques in self.left_out.items()]:
             shared = ", ".join(map(_told, self.torque))
             notes.append(f"all have the torques {shared} N m; left out: {'; '.join(left)} N m")
+        told = [f"finding: {sentence}" for sentence in self.findings(torque)]
         head = f"Compared with {names[0]}, pinion torque {_told(self.torque[at])} N m; {SIZES}"
-        return "\n".join([head, *(line.rstrip() for line in lines), *(f"note: {note}" for note in notes)])
+        return "\n".join([head, *(line.rstrip() for line in lines), *(f"note: {note}" for note in notes), *told])
 
 
 def compare_results(results: Mapping[str, MeshCycle] | Sequence[MeshCycle]) -> Comparison:
@@ -286,7 +303,9 @@ def _flat(table: Mapping[str, Any], place: str = "") -> Iterator[tuple[str, Any]
 
 
 def written_value(value: Any) -> str:
-    """A value of a scene as files have it; a dash where it is not given."""
+    """A value of a scene as files have it; how many numbers lists of lists have; a dash where it is not given."""
+    if isinstance(value, list | tuple) and value and all(isinstance(row, list | tuple) for row in value):
+        return f"{len(value)} lists, {sum(map(len, value))} values"
     return "-" if value is None else shown_value(value)
 
 

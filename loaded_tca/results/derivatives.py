@@ -207,9 +207,9 @@ def sensitivities(result: CycleNumbers, keys: Sequence[str]) -> Sensitivities:
         changes = changes_at_rest(result.scene, [key for key in keys if key != TORQUE])
         made = _as_gears_stand(result, keys, changes)
     if not all(change.holds_lines for change in changes.values()):
-        warn_of_contacts(result, kinds.RELIEF_START_BESIDE.sentence(), made.across_relief_starts, stacklevel=4)
+        warn_of_contacts(result, kinds.RELIEF_START_BESIDE.sentence(), made.across_relief_starts)
     if result.gear_pair.max_pressure is not None:
-        warn_of_contacts(result, kinds.NEARLY_PLASTIC.sentence(cells=FEW), made.nearly_plastic, stacklevel=4)
+        warn_of_contacts(result, kinds.NEARLY_PLASTIC.sentence(cells=FEW), made.nearly_plastic)
     return made
 
 

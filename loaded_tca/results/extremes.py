@@ -87,7 +87,7 @@ def warn_of_positions(sensitivities: Sensitivities, tolerances: Mapping[str, flo
             key = sensitivities.keys[first]
             words = {"key": key, "unit": ending_of(key), "count": np.count_nonzero(sizes), "keys": within.size}
             told = {"figure": name, "change": nearest[first], "size": sizes[first], **words}
-            give_accuracy_warning(kinds.ANOTHER_POSITION.sentence(**told), stacklevel=3)
+            give_accuracy_warning(kinds.ANOTHER_POSITION.sentence(**told))
 
 
 def _figures(sensitivities: Sensitivities) -> Iterator[tuple[str, list[tuple[Array, Array]]]]:

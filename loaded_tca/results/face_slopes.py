@@ -278,7 +278,7 @@ def _cut(grid: LoadedGrid, slices: Mask) -> bool:
     return bool(((grid.separation.cover < 1.0) & (grid.pressure > 0.0))[:, slices].any())
 
 
-def warn_of_strips(keys: Sequence[str], slopes: Array, kinks: Array, lacking: Sequence[float], stacklevel: int) -> None:
+def warn_of_strips(keys: Sequence[str], slopes: Array, kinks: Array, lacking: Sequence[float]) -> None:
     """Tell which derivatives (torque, key) of K_Hbeta are others where another strip has the largest force.
 
     ``kinks``: the derivative there less that here; ``lacking``: what the other strip lacks under each torque.
@@ -289,10 +289,10 @@ def warn_of_strips(keys: Sequence[str], slopes: Array, kinks: Array, lacking: Se
         own = int(worst.argmax())
         words = {"key": keys[own], "count": np.count_nonzero(worst > TOLD), "keys": len(keys)}
         sentence = kinds.STRIPS_ALIKE.sentence(lacking=min(lacking), size=worst[own], **words)
-        give_accuracy_warning(sentence, stacklevel=stacklevel + 1)
+        give_accuracy_warning(sentence)
 
 
-def warn_of_strips_beside(keys: Sequence[str], slopes: Array, through_three: Array, stacklevel: int) -> None:
+def warn_of_strips_beside(keys: Sequence[str], slopes: Array, through_three: Array) -> None:
     """Tell which derivatives (torque, key) of K_Hbeta are others than those through the strips beside the largest."""
     sizes = np.abs(through_three - slopes) / np.maximum(np.abs(slopes), np.abs(through_three)).clip(
         min=np.finfo(float).tiny
@@ -303,26 +303,24 @@ def warn_of_strips_beside(keys: Sequence[str], slopes: Array, through_three: Arr
         torque = int(np.nan_to_num(sizes[:, own]).argmax())
         words = {"key": keys[own], "count": np.count_nonzero(worst > TOLD_BESIDE), "keys": len(keys)}
         pair = {"slope": slopes[torque, own], "other": through_three[torque, own], "unit": ending_of(keys[own])}
-        give_accuracy_warning(kinds.STRIPS_BESIDE.sentence(**words, **pair), stacklevel=stacklevel + 1)
+        give_accuracy_warning(kinds.STRIPS_BESIDE.sentence(**words, **pair))
 
 
-def warn_of_edges(keys: Sequence[str], slopes: Array, kinks: Array, length: float, stacklevel: int) -> None:
+def warn_of_edges(keys: Sequence[str], slopes: Array, kinks: Array, length: float) -> None:
     """Tell which derivatives (torque, position, key) of the transmission error have a kink where edges coincide.
 
     Of the size of what the derivative differs between positions, which is what figures are made of; ``length`` [um/rad]
     by which it is told.
     """
-    _warn_beside_spread(kinds.EDGES_AT_ONE_PLACE, keys, slopes, kinks, length, stacklevel + 1)
+    _warn_beside_spread(kinds.EDGES_AT_ONE_PLACE, keys, slopes, kinks, length)
 
 
-def warn_of_grids(keys: Sequence[str], slopes: Array, by_grids: Array, length: float, stacklevel: int) -> None:
+def warn_of_grids(keys: Sequence[str], slopes: Array, by_grids: Array, length: float) -> None:
     """Tell which derivatives of the transmission error depend on the grids by ``by_grids``, likewise."""
-    _warn_beside_spread(kinds.SLOPES_BY_GRIDS, keys, slopes, by_grids, length, stacklevel + 1)
+    _warn_beside_spread(kinds.SLOPES_BY_GRIDS, keys, slopes, by_grids, length)
 
 
-def _warn_beside_spread(
-    kind: kinds.Kind, keys: Sequence[str], slopes: Array, parts: Array, length: float, stacklevel: int
-) -> None:
+def _warn_beside_spread(kind: kinds.Kind, keys: Sequence[str], slopes: Array, parts: Array, length: float) -> None:
     loaded = np.isfinite(slopes).any(axis=(1, 2))
     slopes, parts = slopes[loaded], parts[loaded]
     over_positions = np.nanmax(slopes, axis=1) - np.nanmin(slopes, axis=1)
@@ -334,10 +332,10 @@ def _warn_beside_spread(
         own = int(np.where(above, sizes.max(axis=0), -1.0).argmax())
         size, unit = length * float(sizes[:, own].max()), keys[own].rpartition("_")[2]
         counted = {"key": keys[own], "count": np.count_nonzero(above), "keys": len(keys)}
-        give_accuracy_warning(kind.sentence(size=size, unit=unit, **counted), stacklevel=stacklevel + 1)
+        give_accuracy_warning(kind.sentence(size=size, unit=unit, **counted))
 
 
-def warn_of_face_ends(keys: Sequence[str], slopes: Array, kinks: Array, stacklevel: int) -> None:
+def warn_of_face_ends(keys: Sequence[str], slopes: Array, kinks: Array) -> None:
     """Tell which derivatives (torque, key) of K_Hbeta are others by growing values than by falling ones."""
     sides = np.stack([slopes - 0.5 * kinks, slopes + 0.5 * kinks])
     sizes = np.nan_to_num(np.abs(kinks) / np.abs(sides).max(axis=0).clip(min=np.finfo(float).tiny))
@@ -348,12 +346,10 @@ def warn_of_face_ends(keys: Sequence[str], slopes: Array, kinks: Array, stacklev
         counted = {"key": keys[own], "count": np.count_nonzero(above), "keys": len(keys)}
         unit = keys[own].rpartition("_")[2]
         sentence = kinds.FACE_ENDS_AT_ONE_PLACE.sentence(falling=falling, growing=growing, unit=unit, **counted)
-        give_accuracy_warning(sentence, stacklevel=stacklevel + 1)
+        give_accuracy_warning(sentence)
 
 
-def warn_of_end_strips(
-    result: CycleNumbers, keys: Sequence[str], motions: Array, kinks: Array, stacklevel: int
-) -> None:
+def warn_of_end_strips(result: CycleNumbers, keys: Sequence[str], motions: Array, kinks: Array) -> None:
     """Tell where K_Hbeta is that of a strip at an end of the common face which goes with a key.
 
     ``motions`` and ``kinks`` are those of :func:`common_face_motions`. Where the faces of both gears end at one place
@@ -369,15 +365,13 @@ def warn_of_end_strips(
     if at_end.any():
         first = keys[int(at_end.argmax())]
         counted = {"key": first, "count": np.count_nonzero(at_end), "keys": len(keys)}
-        give_accuracy_warning(kinds.FACE_END_IN_LOAD.sentence(**counted), stacklevel=stacklevel + 1)
+        give_accuracy_warning(kinds.FACE_END_IN_LOAD.sentence(**counted))
 
 
-def warn_of_arcs(result: CycleNumbers, keys: Sequence[str], slopes: Array, stacklevel: int) -> None:
+def warn_of_arcs(result: CycleNumbers, keys: Sequence[str], slopes: Array) -> None:
     """Tell where derivatives (torque, key) of K_Hbeta rest on contacts that end on the arc of an end of the face."""
     errors = np.array([error_beside_arcs(result.gear_pair, result.path, rows) for rows in result.maps])
     moved = (np.nan_to_num(slopes)[errors > TOLD] != 0.0).any(axis=0)
     if moved.any():
         counted = {"key": keys[int(moved.argmax())], "count": np.count_nonzero(moved), "keys": len(keys)}
-        give_accuracy_warning(
-            kinds.ARC_IN_LOAD.sentence(error=float(errors.max()), **counted), stacklevel=stacklevel + 1
-        )
+        give_accuracy_warning(kinds.ARC_IN_LOAD.sentence(error=float(errors.max()), **counted))

@@ -61,9 +61,9 @@ def warn_of_gears(scene: Scene, pair: GearPair, *, whole_revolution: bool = Fals
         *_small_clearances(scene, pair),
         *_notches(scene),
     ]:
-        give_accuracy_warning(sentence, stacklevel=3)
+        give_accuracy_warning(sentence)
     if scene.has_pitch_deviations and not whole_revolution:
-        give_accuracy_warning(kinds.PITCH_DEVIATIONS.sentence(), stacklevel=3)
+        give_accuracy_warning(kinds.PITCH_DEVIATIONS.sentence())
     if scene.analysis.without_bodies:
         with arguments_by_keys(type(scene)):
             require_teeth(pair, scene.analysis.without_bodies)
@@ -71,7 +71,7 @@ def warn_of_gears(scene: Scene, pair: GearPair, *, whole_revolution: bool = Fals
         warn_of_teeth(pair)
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         if scene.analysis.root_stress and (rim := gear.rim_over_height) < THIN_RIM:
-            give_accuracy_warning(kinds.THIN_RIM.sentence(gear=name, rim=rim, least=THIN_RIM), stacklevel=3)
+            give_accuracy_warning(kinds.THIN_RIM.sentence(gear=name, rim=rim, least=THIN_RIM))
 
 
 def _short_path(scene: Scene) -> list[str]:

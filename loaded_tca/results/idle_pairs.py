@@ -139,7 +139,7 @@ def warn_of_pairs(sensitivities: Sensitivities, tolerances: Mapping[str, float])
         key = max(by_key, key=lambda one: by_key[one][1])
         words = {"key": key, "unit": ending_of(key), "count": len(by_key), "keys": len(sensitivities.keys)}
         change, share = by_key[key]
-        give_accuracy_warning(kinds.PAIR_COMES_OR_GOES.sentence(change=change, share=share, **words), stacklevel=3)
+        give_accuracy_warning(kinds.PAIR_COMES_OR_GOES.sentence(change=change, share=share, **words))
 
 
 def _coming(sensitivities: Sensitivities, idle: IdlePairs, number: int, step: float) -> Iterator[tuple[float, float]]:

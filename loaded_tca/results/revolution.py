@@ -255,6 +255,28 @@ class OverTurns(AnalysisResult):
                 return f"{name} {turns}"
         return ""
 
+    def leaking_orders(self) -> dict[str, Array]:
+        """Orders of rotation of each gear that deviates, and of which the revolution is no whole turn.
+
+        The revolution has no such order: its amplitude leaks into the orders beside it.
+
+        Returns
+        -------
+        dict of str to (k,) array
+            By gears: for each order of ``spectrum`` the nearest order of the gear's own rotation that the revolution
+            does not have, up to half the way to the next order of ``spectrum``; NaN: none.
+        """
+        cycles = np.arange(1, (self.pitches * self.per_pitch - 1) // 2 + 1)
+        leaking = {}
+        for gear in open_turns(self.scene, self.pitches):
+            teeth = self.teeth[GEARS.index(gear)]
+            beside = np.round(cycles * teeth / self.pitches).astype(int) + np.array([[0], [-1], [1]])
+            away = np.abs(beside * self.pitches / teeth - cycles)
+            leaks = (beside > 0) & (beside * self.pitches % teeth != 0) & (away <= 0.5)
+            nearest = np.where(leaks, away, math.inf).argmin(axis=0), np.arange(len(cycles))
+            leaking[gear] = np.where(leaks[nearest], beside[nearest], math.nan)
+        return leaking
+
     def labels(self) -> dict[str, str]:
         """As of results; of part of a turn no deviation is the total one."""
         labels = super().labels()
@@ -323,6 +345,22 @@ class Revolution(OverTurns):
     def __repr__(self) -> str:
         torques, positions = (self.dataset.sizes[name] for name in CYCLE)
         return f"Revolution({self.pitches} pitches x {self.per_pitch} positions, {torques} torques, {positions} each)"
+
+    def findings(self) -> tuple[str, ...]:
+        """Return a sentence for each torque whose peak pressure lies in slices at an edge.
+
+        At which pinion angle, on which teeth, how much they carry, and the largest pressure of contacts away from
+        edges. The pressure at the edge itself is none of the numbers of a revolution.
+        """
+        return tuple(filter(None, (_peak_finding(self.under(t)) for t in range(len(self.torque)))))
+
+    def sentences(self) -> dict[str, tuple[str, ...]]:
+        """What edges do to the peak pressure, and accuracy warnings."""
+        return {"note": self.notes(), "finding": self.findings(), "warning": self.warnings or ()}
+
+    def beside_figures(self) -> dict[str, Any]:
+        """Findings and warnings."""
+        return {"findings": self.findings(), **super().beside_figures()}
 
     def by_tooth(self, gear: str = "wheel") -> xarray.Dataset:
         """Return what each tooth of a gear carries at the most in the revolution.
@@ -401,6 +439,28 @@ class Revolution(OverTurns):
         return xarray.Dataset(arrays, coordinates, {"title": self.scene.title})
 
 
+def _peak_finding(under: UnderTorque) -> str:
+    """Where the peak pressure lies, if that is at an edge; nothing elsewhere."""
+    pressure, place, at_edge = under.peak_pressure, under.place("peak_pressure"), under.on_edge > 0
+    if not at_edge[place]:
+        return ""
+    away = pressure[~at_edge]
+    teeth = [_tooth(gear, "peak_pressure", under) for gear in GEARS]
+    most = (
+        f"the largest of contacts away from edges is {plain(np.nanmax(away))} MPa"
+        if np.isfinite(away).any()
+        else "all contacts reach an edge"
+    )
+    angle = math.degrees(float(under.result.pinion_angle[place[0]]))
+    return (
+        f"the peak pressure {plain(pressure[place])} MPa at {plain(1e-3 * float(under.torque), 6)} N m lies in slices "
+        f"at an edge, at pinion angle {plain(angle)} deg on tooth {teeth[0]} of the pinion and tooth {teeth[1]} of the "
+        f"wheel, which carry {plain(100.0 * float(under.load_share[place]), 3)} % of the torque; {most}; a revolution "
+        "has neither the name of the edge nor the pressure at the edge itself: the pressure map of that position, "
+        f"analyse_revolution(scene, maps=[{place[0]}]), shows the edge"
+    )
+
+
 def open_turns(scene: Scene, pitches: int) -> list[str]:
     """Gears with deviations of which so many pitches are no whole turn."""
     gears = zip(GEARS, (scene.pinion, scene.wheel), strict=True)
@@ -424,10 +484,14 @@ def teeth_table(revolution: Revolution) -> Columns:
 
 
 def orders_table(revolution: OverTurns) -> Columns:
-    """A row for each order of the transmission error of a revolution: rigid, and under each torque."""
+    """A row for each order of the transmission error of a revolution: rigid, and under each torque.
+
+    Where the revolution is no whole turn of a gear that deviates, a column has the orders of this gear that leak.
+    """
     rigid = revolution.spectrum(rigid=True)
     order = f"order_of_{GEARS[revolution.counted_by]}"
     columns: dict[str, Any] = {order: rigid.order, "kind": np.array(rigid.kind, dtype=object)}
+    columns |= {f"leaking_order_of_{gear}": orders for gear, orders in revolution.leaking_orders().items()}
     columns["rigid_amplitude_um"] = rigid.amplitude
     for t, torque in enumerate(revolution.torque):
         columns[f"amplitude_at_{plain(1e-3 * torque, 6)}_Nm_um"] = revolution.spectrum(t).amplitude

@@ -172,7 +172,7 @@ class Sensitivities:
         change = self.tangents.rotation_change(self.growth.gaps, self.torques)
         slopes[*self.places] = -self.result.gear_pair.driving * change.T
         if self.growth.kinks is not None:
-            warn_of_edges(self.keys, slopes, self.transmission_error_kinks, self.result.um_per_rad, stacklevel=3)
+            warn_of_edges(self.keys, slopes, self.transmission_error_kinks, self.result.um_per_rad)
         return slopes
 
     @cached_property
@@ -239,7 +239,7 @@ class Sensitivities:
         slopes = self._by_pair((own - share * self._raised) / torque)
         shared = ~np.isnan(self.result.load_share) & np.isfinite(self.transmission_error).any(axis=-1, keepdims=True)
         slopes[shared & np.isnan(slopes).all(axis=-1)] = 0.0
-        warn_of_share_grids(self.keys, self.result.load_share, slopes, self.load_share_by_grids, stacklevel=3)
+        warn_of_share_grids(self.keys, self.result.load_share, slopes, self.load_share_by_grids)
         return slopes
 
     @cached_property
@@ -319,9 +319,7 @@ class Sensitivities:
     @cached_property
     def line_load(self) -> Array:
         """Derivatives of the line load of each contact, (torque, position, pair, key) [N/mm per unit]."""
-        warn_of_contacts(
-            self.result, kinds.LINE_LOAD_SLOPES.sentence(), self._of_changes(self.on_cut_slices), stacklevel=3
-        )
+        warn_of_contacts(self.result, kinds.LINE_LOAD_SLOPES.sentence(), self._of_changes(self.on_cut_slices))
         slopes = self.tangents.gathered(
             line_load_slopes(grid.pressure, grid.problem.spacing) for grid in self.tangents.grids
         )
@@ -335,15 +333,15 @@ class Sensitivities:
         another place of the contact has nearly the same pressure, an AccuracyWarning has the derivative there.
         """
         jumps = kinds.PEAK_BESIDE_JUMP.sentence()
-        warn_of_contacts(self.result, kinds.PEAK_SLOPES.sentence(), self._of_changes(self.at_corners), stacklevel=3)
-        warn_of_contacts(self.result, jumps, self._of_changes(self.beside_curvature_jumps), stacklevel=3)
+        warn_of_contacts(self.result, kinds.PEAK_SLOPES.sentence(), self._of_changes(self.at_corners))
+        warn_of_contacts(self.result, jumps, self._of_changes(self.beside_curvature_jumps))
         slopes = self._of_peaks(self._rough_peaks)
         lacking, others = self._other_peaks
         if any(peak is not None for peak in others):
             peaks = [peak if other is None else other for peak, other in zip(self._rough_peaks, others, strict=True)]
             moves = [change is not None for change in self.changes]
             beyond = np.where(moves, self._of_peaks(peaks), slopes)
-            warn_of_alike_peaks(self.keys, self.result.peak_pressure, lacking, slopes, beyond, stacklevel=3)
+            warn_of_alike_peaks(self.keys, self.result.peak_pressure, lacking, slopes, beyond)
         return slopes
 
     def _of_peaks(self, peaks: Sequence[SlicePeak | InnerPeak | None]) -> Array:
@@ -451,14 +449,14 @@ class Sensitivities:
         if any(rivals):
             others, _ = self._of_strips(([None if rival is None else rival[0] for rival in rivals], 1.0))
             lacking = [rival[1] for rival in rivals if rival is not None]
-            warn_of_strips(self.keys, by_torque, others - by_torque, lacking, stacklevel=3)
+            warn_of_strips(self.keys, by_torque, others - by_torque, lacking)
         if not all(rivals):
             alike = np.array([rival is not None for rival in rivals])[:, None]
             through_three = np.where(alike, by_torque, self._through_three_strips)
-            warn_of_strips_beside(self.keys, by_torque, through_three, stacklevel=3)
-        warn_of_face_ends(self.keys, by_torque, kinks, stacklevel=3)
-        warn_of_end_strips(result, self.keys, *self._common_face, stacklevel=3)
-        warn_of_arcs(result, self.keys, by_torque, stacklevel=3)
+            warn_of_strips_beside(self.keys, by_torque, through_three)
+        warn_of_face_ends(self.keys, by_torque, kinks)
+        warn_of_end_strips(result, self.keys, *self._common_face)
+        warn_of_arcs(result, self.keys, by_torque)
         return by_torque
 
     @property
@@ -630,7 +628,7 @@ class Sensitivities:
         says by how much.
         """
         errors, slopes = self.result.transmission_error, self.transmission_error
-        warn_of_grids(self.keys, slopes, self.transmission_error_by_grids, self.result.um_per_rad, stacklevel=3)
+        warn_of_grids(self.keys, slopes, self.transmission_error_by_grids, self.result.um_per_rad)
         changes = np.full((len(errors), len(self.keys)), np.nan)
         for t, error in enumerate(errors):
             if min(self.result.places_of_mesh, np.isfinite(error).sum()) > 1:

@@ -54,7 +54,7 @@ def seen_size(keys: Sequence[str], figure: Array, slopes: Array) -> Array:
     return np.maximum(_largest(slopes), LEAST * float(np.nan_to_num(figure).max()) / usual)
 
 
-def warn_of_share_grids(keys: Sequence[str], shares: Array, slopes: Array, by_grids: Array, stacklevel: int) -> None:
+def warn_of_share_grids(keys: Sequence[str], shares: Array, slopes: Array, by_grids: Array) -> None:
     """Warn of derivatives (torque, position, pair, key) of load shares that depend on the grids by ``by_grids``."""
     sizes = _largest(by_grids)
     above = sizes > TOLD * seen_size(keys, shares, slopes)
@@ -64,12 +64,10 @@ def warn_of_share_grids(keys: Sequence[str], shares: Array, slopes: Array, by_gr
         sentence = kinds.SHARES_BY_GRIDS.sentence(
             size=sizes[own], largest=_largest(slopes)[own], unit=ending_of(keys[own]), **counted
         )
-        give_accuracy_warning(sentence, stacklevel=stacklevel + 1)
+        give_accuracy_warning(sentence)
 
 
-def warn_of_alike_peaks(
-    keys: Sequence[str], pressures: Array, lacking: Array, slopes: Array, others: Array, stacklevel: int
-) -> None:
+def warn_of_alike_peaks(keys: Sequence[str], pressures: Array, lacking: Array, slopes: Array, others: Array) -> None:
     """Warn of kinks of peak pressures: another place of the contact has nearly the largest pressure.
 
     ``lacking`` (torque, position, pair): relative difference between the largest pressure and the pressure at the other
@@ -91,7 +89,7 @@ def warn_of_alike_peaks(
             unit=ending_of(keys[own]),
             **counted,
         )
-        give_accuracy_warning(sentence, stacklevel=stacklevel + 1)
+        give_accuracy_warning(sentence)
 
 
 def _largest(slopes: Array) -> Array:

@@ -162,7 +162,7 @@ def warn_of_supports(pair: GearPair, cycles: Sequence[LoadedStanding]) -> None:
         if torque > 0.0 and np.isfinite(moments).any():
             parts.append(abs(abs(float(np.nanmean(moments))) / torque - 1.0))
     if max(parts) > LARGEST_MOMENT:
-        give_accuracy_warning(kinds.SUPPORT_MOMENT.sentence(part=max(parts)), stacklevel=3)
+        give_accuracy_warning(kinds.SUPPORT_MOMENT.sentence(part=max(parts)))
 
 
 def warn_of_motions(pair: GearPair, cycles: Sequence[LoadedStanding]) -> None:
@@ -175,7 +175,6 @@ def warn_of_motions(pair: GearPair, cycles: Sequence[LoadedStanding]) -> None:
     if way > LARGEST_WAY * pair.module or tilt > LARGEST_TILT:
         give_accuracy_warning(
             kinds.LARGE_MOTIONS.sentence(way=way, tilt=1e3 * tilt, modules=LARGEST_WAY, most=1e3 * LARGEST_TILT),
-            stacklevel=3,
         )
 
 

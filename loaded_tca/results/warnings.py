@@ -122,7 +122,7 @@ def warn_of_accuracy(
         return {_without_size(sentence): sentence for sentence in sentences}
 
     for sentence in sentences_of_torques(torques, under):
-        give_accuracy_warning(sentence, stacklevel=3)
+        give_accuracy_warning(sentence)
 
 
 class SentenceOfTorques(str):
@@ -187,13 +187,13 @@ def rotation_reasons(
     return sentences
 
 
-def warn_of_contacts(result: CycleNumbers, reason: str, where: Mask, stacklevel: int) -> None:
+def warn_of_contacts(result: CycleNumbers, reason: str, where: Mask) -> None:
     """Give an AccuracyWarning with the number of contacts of a result, (torque, position, pair), that it concerns."""
     angles, pairs = result.path.pinion_angle, result.pair
     places = [place_of(result.torque[t], angles[n], pairs[k]) for t, n, k in np.argwhere(where).tolist()]
     if places:
         loaded = int(np.count_nonzero(result.load_share > 0.0))
-        give_accuracy_warning(at_places(reason, places, loaded), stacklevel=stacklevel + 1)
+        give_accuracy_warning(at_places(reason, places, loaded))
 
 
 def place_of(torque: float, angle: float, number: int) -> str:
@@ -225,7 +225,7 @@ def warn_of_root_stress(torques: Array, tension: Array, compression: Array) -> N
         }
 
     for sentence in sentences_of_torques(torques, under):
-        give_accuracy_warning(sentence, stacklevel=4)
+        give_accuracy_warning(sentence)
 
 
 def without_place(sentence: str) -> str:
@@ -315,7 +315,7 @@ LEAST_SHARE, SMALL_SHARE = 1e-3, 0.1
 
 def findings_of(result: CycleNumbers) -> tuple[str, ...]:
     """Sentences on what the largest pressures under each torque rest on; see ``MeshCycle.findings``."""
-    by_torque = ((_edge_finding(result, t), _peak_finding(result, t)) for t in range(len(result.torque)))
+    by_torque = ((_edge_finding(result, t), peak_finding(result, t)) for t in range(len(result.torque)))
     return tuple(sentence for sentences in by_torque for sentence in sentences if sentence)
 
 
@@ -410,8 +410,11 @@ def _edge_finding(result: CycleNumbers, torque: int) -> str:
     )
 
 
-def _peak_finding(result: CycleNumbers, torque: int) -> str:
-    """A peak pressure of slices at an edge in a pair that carries little, beside that of pairs that carry more."""
+def peak_finding(result: CycleNumbers, torque: int) -> str:
+    """A sentence on a peak pressure of slices at an edge in a pair that carries less than a tenth of the torque.
+
+    Beside it stands the peak pressure of pairs that carry more. Empty: the peak pressure lies elsewhere.
+    """
     place = result.peak_contact(torque)
     if place is None or not result.on_edge[torque][place] or result.load_share[torque][place] >= SMALL_SHARE:
         return ""

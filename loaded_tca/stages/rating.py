@@ -233,7 +233,7 @@ def stage_rating_of(result: StageResult, *, warn: bool = True) -> StageRating:
         arrays["spectrum_safety"][1] = gears.planet_safety
         sentences += told_error(error, len(torques))
     for sentence in sentences if warn else ():
-        give_accuracy_warning(sentence, stacklevel=3)
+        give_accuracy_warning(sentence)
     about: dict[str, Any] = {"version": meshes[0].version, "warnings": "\n".join(sentences)}
     dataset = kind.dataset_of(arrays, {"gear": MEMBERS, "mode": [*gears.endurances]}, **about)
     return kind(result, *meshes, dataset, cases, gears.endurances)

@@ -61,5 +61,5 @@ def tribology_of(
     )
     tribology = Tribology(result, conditions)
     for sentence in tribology.warnings if warn else ():
-        give_accuracy_warning(sentence, stacklevel=3)
+        give_accuracy_warning(sentence)
     return tribology

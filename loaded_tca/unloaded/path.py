@@ -228,7 +228,7 @@ def warn_of_fillets(pair: GearPair, path: ContactPath, what: str) -> None:
         where = " or a ".join(dict.fromkeys(flank.frame.edges[root] for flank in flanks))
         held_there = f"at {count} of {len(path)} positions the {what} lies on a {where}"
         sentence = kinds.FILLET.sentence(what=f"{held_there}, where the flank ends and the fillet begins")
-        give_accuracy_warning(sentence, stacklevel=3)
+        give_accuracy_warning(sentence)
 
 
 def default_angles(pair: GearPair) -> Array:

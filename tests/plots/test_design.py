@@ -133,3 +133,14 @@ test_what_a_design_does_not_have_is_told = refusals(
 def test_robustness_curve_of_a_result_without_one_is_refused():
     with pytest.raises(InputError, match="no robustness curve; allowed what"):
         plot_robustness(design().assign(objective=("design", [1.0, 0.5])))
+
+
+def test_designs_under_one_torque_stand_side_by_side_above_it():
+    one = design(torques=TORQUES[:1])
+    factor = plot_before_and_after(one).axes[2]
+    places = [float(line.get_xdata()[0]) for line in factor.lines]
+    assert places[0] < places[1]
+    assert_allclose(factor.get_xticks(), [1e-3 * TORQUES[0]], rtol=1e-12)
+    assert np.mean(places) == pytest.approx(1e-3 * TORQUES[0], rel=1e-12)
+    heights = [float(line.get_ydata()[0]) for line in factor.lines]
+    assert_allclose(heights, one.face_load_factor.mean("sample").values[:, 0])

@@ -55,6 +55,16 @@ def test_bars_add_up_to_the_damage(torques):
     assert axes.get_ylabel() == "damage in 20000 h [-]"
 
 
+@pytest.mark.parametrize("torques", [(), np.linspace(100.0, 200.0, 45)])
+def test_panels_of_damage_have_axes_of_one_kind(torques):
+    """Logarithmic, if the damages of one panel differ by more than a decade."""
+    panels = [axes for axes in plot_damage(rated(torques)).axes if any(bar.get_height() > 0.0 for bar in axes.patches)]
+    seen = [np.array([bar.get_height() for bar in axes.patches]) for axes in panels]
+    spans = [damage.max() / damage[damage > 1e-6 * damage.max()].min() for damage in seen]
+    assert len(panels) > 1
+    assert {axes.get_yscale() for axes in panels} == {"log" if max(spans) >= 10.0 else "linear"}
+
+
 def test_bars_of_one_torque_stand_at_that_torque_alone():
     one = rated([150.0])
     axes = plot_damage(one).axes[1]

@@ -67,6 +67,7 @@ def test_mesh_orders_stand_at_multiples_of_the_teeth():
 
 def test_band_of_shares_holds_the_mean_and_every_tooth_its_pressure():
     curves, pinion, wheel_teeth = plot_revolution_shares(turn(), 0).axes
+    assert set(pinion.get_xticks() % 1.0) == set(wheel_teeth.get_xticks() % 1.0) == {0.0}
     mean = curves.lines[0].get_ydata()
     assert 0.9 < mean.max() <= 1.0
     assert_allclose(mean.sum(), 4.0, rtol=0.02)  # of each position all shares are one; ends of the turn are left out

@@ -17,7 +17,7 @@ from loaded_tca.plots import (
     save_figure,
 )
 from loaded_tca.plots.flanks import ToPicture
-from loaded_tca.plots.sensitivities import removal_weights
+from loaded_tca.plots.sensitivities import WITH_MOUNTING, removal_weights
 from loaded_tca.results import key_figure_slopes
 from loaded_tca.results.key_figures import mean_over_a_pitch
 from tests.samples.pictures import told
@@ -137,6 +137,14 @@ def test_band_is_the_root_of_the_sum_of_the_squares():
         assert_allclose(absolute.lines[0].get_ydata(), error, rtol=ROUNDING)
         assert "[µm]" in absolute.get_ylabel()
     assert "tolerances of 5 keys, to first order" in told(figure)
+
+
+@pytest.mark.parametrize(("keys", "is_said"), [(0, True), (2, False)])
+def test_band_says_that_it_contains_mounting_errors_which_the_tornado_leaves_out(keys, is_said):
+    """Not where the tornado shows them, as of mounting errors alone."""
+    one = found(keys=tuple(TOLERANCES)[keys:4])
+    assert (WITH_MOUNTING in told(plot_transmission_error_band(one, TOLERANCES))) == is_said
+    assert any("keys but mounting errors" in axes.get_title() for axes in plot_tornado(one, TOLERANCES).axes) == is_said
 
 
 def test_band_of_one_torque_is_that_one():

@@ -424,6 +424,17 @@ def test_scatter_matrix_of_many_keys_shows_those_that_matter(rng):
     assert "6 of 7 varied keys" in title(figure)
 
 
+def test_bars_of_a_key_in_equal_steps_stand_over_its_values():
+    lead, relief = (list(column) for column in zip(*itertools.product([0.0, 5.0, 10.0], [2.5, 3.0]), strict=True))
+    keys = {LEAD: lead, "pinion.modifications.tip_relief_um": relief}
+    figure = plot_study_scatter_matrix(dataset(keys, {SPAN: np.arange(6.0)}, sampling="distribution"), [SPAN])
+    panels = [axes for axes in figure.axes if axes.patches][:2]
+    middles = [[bar.get_x() + 0.5 * bar.get_width() for bar in axes.patches] for axes in panels]
+    assert_allclose(middles[0], [0.0, 5.0, 10.0], atol=1e-12)
+    assert_allclose(middles[1], [2.5, 3.0], rtol=1e-12)
+    assert [heights(axes) for axes in panels] == [[2, 2, 2], [3, 3]]
+
+
 @pytest.mark.thorough
 def test_words_and_whole_numbers_have_their_ticks_in_the_scatter_matrix():
     hand, teeth = (list(column) for column in zip(*itertools.product(["right", "left"], [33, 34, 35]), strict=True))

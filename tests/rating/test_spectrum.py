@@ -132,6 +132,13 @@ def test_reversed_bins_load_the_other_flanks_and_bend_roots_both_ways():
     rated = under(back)
     assert_array_equal(rated.damage[0, :, [0, 2]], 0.0)
     assert_array_equal(rated.flank_safety[0], np.inf)
+    first, second = rated.key_figures()
+    for name in ("sigma_H_MPa", "flank_safety", "local_flank_safety"):
+        assert np.isnan(first[f"pinion_{name}"])  # of flanks that are not analysed
+        assert np.isfinite(second[f"pinion_{name}"])
+    cells = {line.split("  ")[0]: line.split()[-6:] for line in rated.summary().splitlines()}
+    assert cells["contact stress sigma_H [MPa]"][:3] == cells["safety against pitting S_H"][:3] == ["-", "|", "-"]
+    assert cells["torque reversed (1: yes, 0: no)"][-2:] == ["1", "0"]
     assert_allclose(rated.damage[1][:, [0, 2]], plain.damage[1][:, [0, 2]], rtol=ROUNDING)
     sensitivity = 0.8 - 0.15 * rated.Y_S  # case-hardened, annex B of ISO 6336-3:2006
     # R = -1.2 times the load of the other flank over that of the bin, at most 1: no result of the other flank has it

@@ -193,11 +193,11 @@ def test_arrow_keys_on_sliders_move_the_map_and_all_that_is_linked(page):
     assert value.startswith(f"{beside + 1} of 5: pinion angle")
     page.press("torque", HOME)
     assert_allclose(page.numbers("map"), loaded_cells(0, beside, subject().peak_column[0, beside]), atol=0.03)
-    page.show("panel-0")
-    mark = page.run("return document.getElementById('panel-0').layout.shapes[0].x0")
+    page.show("panel-1")
+    mark = page.run("return document.getElementById('panel-1').layout.shapes[0].x0")
     assert mark == pytest.approx(math.degrees(subject().pinion_angle[beside]), abs=1e-12)
     error = 1e3 * subject().wheel_base_radius * subject().transmission_error
-    assert_allclose(page.trace("panel-0", 0, "y"), error[0], rtol=1e-12)
+    assert_allclose(page.trace("panel-1", 0, "y"), error[0], rtol=1e-12)
     page.show("line-load")
     loads = page.run("return document.getElementById('line-load').data.map(({ y }) => Math.max(...y))")
     loaded = [one for one in subject().maps[0][beside] if one is not None and one.pressure.any()]
@@ -212,9 +212,9 @@ def test_hover_shows_the_value_of_the_array(page):
     (value,) = re.findall(r"([\d.]+) MPa", page.hover_text("map"))
     assert float(value) == pytest.approx(one.pressure[across, along], rel=DIGITS)
     error = 1e3 * subject().wheel_base_radius * subject().transmission_error[1, 2]
-    page.show("panel-0")
-    page.point_at("panel-0", math.degrees(subject().pinion_angle[2]), float(error))
-    text = page.hover_text("panel-0")
+    page.show("panel-1")
+    page.point_at("panel-1", math.degrees(subject().pinion_angle[2]), float(error))
+    text = page.hover_text("panel-1")
     (value,) = re.findall(r"under load: ([-\d.]+) µm", text)
     assert float(value) == pytest.approx(error, rel=DIGITS)
 
@@ -222,9 +222,9 @@ def test_hover_shows_the_value_of_the_array(page):
 @pytest.mark.thorough
 def test_click_on_a_curve_sets_the_position(page):
     reset(page)
-    page.show("panel-1")
+    page.show("panel-2")
     share = 100.0 * subject().load_share[1, 1, 0]
-    page.point_at("panel-1", math.degrees(subject().pinion_angle[1]), float(share), click=True)
+    page.point_at("panel-2", math.degrees(subject().pinion_angle[1]), float(share), click=True)
     page.until(lambda: page.run("return document.getElementById('position').value") == "1")
 
 
@@ -239,6 +239,21 @@ def test_flank_of_the_other_gear_is_chosen_by_keyboard(page):
     position = subject().peak_contact(1)[0]
     largest = max(one.pressure.max() for one in subject().maps[1][position] if one)
     assert page.numbers("flank").max() == pytest.approx(largest, rel=DIGITS)
+
+
+def test_teeth_are_in_view_from_end_to_end(page):
+    """Within the cone of view of 45 deg about the camera, whichever way they turn: the box has the volume 1."""
+    reset(page)
+    page.show("space")
+    sides = page.run(
+        "return ['x', 'y', 'z'].map((axis) => {"
+        "const all = document.getElementById('space').data.flatMap((trace) => Array.from(trace[axis]));"
+        "return all.reduce((a, b) => Math.max(a, b)) - all.reduce((a, b) => Math.min(a, b));"
+        "})"
+    )
+    eye = page.run("return ['x', 'y', 'z'].map((k) => document.getElementById('space').layout.scene.camera.eye[k])")
+    radius = 0.5 * math.hypot(*sides) / math.cbrt(math.prod(sides))
+    assert math.hypot(*eye) * math.sin(math.radians(22.5)) >= (1.0 - 1e-9) * radius  # sums of rounded numbers
 
 
 @pytest.mark.thorough
@@ -304,8 +319,8 @@ def test_colours_of_maps_grow_lighter_for_every_reader(page):
     scale = page.run("return document.getElementById('map')._fullData[1].colorscale")
     levels = [luminance(code) for _, code in scale]
     assert all(second > first for first, second in pairwise(levels))
-    page.show("panel-2")
-    dashes = page.run("return document.getElementById('panel-2').data.map((one) => one.line.dash)")
+    page.show("panel-3")
+    dashes = page.run("return document.getElementById('panel-3').data.map((one) => one.line.dash)")
     assert len(set(dashes)) == len(dashes)
 
 

@@ -167,6 +167,10 @@ def test_curves_are_those_of_the_result_to_the_last_digit(page):
     assert_array_equal(values("Transmission error", "under load"), um * subject.transmission_error)
     unloaded = values("Transmission error", "unloaded")
     assert_array_equal(unloaded, np.tile(um * subject.unloaded_transmission_error, (3, 1)))
+    for line in ("under load", "unloaded"):
+        swing, whole = (values(f"Transmission error{more}", line) for more in (" less its mean", ""))
+        assert_allclose(swing - swing[:, :1], whole - whole[:, :1], atol=1e-12 * np.abs(whole).max())  # one difference
+        assert_allclose(np.trapezoid(swing, axis=1), 0.0, atol=1e-12 * np.abs(whole).max())  # over the pitch
     for k, number in enumerate(("-1", "0", "+1")):
         assert_array_equal(values("Share of the torque", f"tooth pair {number}"), 100.0 * subject.load_share[..., k])
         assert_array_equal(values("Peak pressure", f"tooth pair {number}"), subject.peak_pressure[..., k])

@@ -5,6 +5,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.results import compare_results
+from loaded_tca.results.comparison import written_value
 from loaded_tca.results.figure import compared, of_bending
 from loaded_tca.results.figures import FIGURES
 from loaded_tca.scene.section import as_table
@@ -130,6 +131,35 @@ def test_summary_has_values_and_both_differences():
     assert names.split() == ["a", "b"]
     peak = np.nanmax(first.peak_pressure[0])
     assert row.split()[-5:] == [f"{peak:.4g}", f"{2.0 * peak:.4g}", f"+{peak:.4g}", "(+100.0", "%)"]
+
+
+def with_peak_at_an_edge(share):
+    """Two torques, whose peak pressure under the larger one is 9000 MPa at an edge, on a pair with such a share."""
+    cycle = two_torques()
+    numbers = {name: getattr(cycle, name).copy() for name in ("peak_pressure", "load_share", "on_edge")}
+    place = 1, *cycle.peak_contact(1)
+    numbers["peak_pressure"][place], numbers["load_share"][place], numbers["on_edge"][place] = 9000.0, share, 1
+    return changed(cycle, **numbers)
+
+
+def test_peak_at_an_edge_on_a_pair_that_carries_little_is_told():
+    edged = with_peak_at_an_edge(0.036)
+    comparison = compare_results({"a": two_torques(), "b": edged})
+    (sentence,) = comparison.findings()
+    assert sentence.startswith("b: the peak pressure 9000 MPa at 80 N m lies in slices at an edge, on a pair that ")
+    carrying = edged.peak_pressure[1][edged.load_share[1] >= 0.1]
+    assert "carries 3.6 % of the torque; on pairs that carry a tenth of the torque or more the peak pressure is " in (
+        sentence
+    )
+    assert float(sentence.split()[-2]) == pytest.approx(np.nanmax(carrying), rel=1e-3)  # four digits
+    assert comparison.summary().splitlines()[-1] == f"finding: {sentence}"
+    assert comparison.findings(20e3) == ()
+    assert compare_results([two_torques(), with_peak_at_an_edge(0.2)]).findings() == ()
+
+
+def test_lists_of_measured_points_are_counted():
+    assert written_value([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]) == "2 lists, 6 values"
+    assert written_value((8.0, 16.0)) == "[8.0, 16.0]"
 
 
 def with_error(cycle, part, times=1.0):

@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.analysis import roots_of
+from loaded_tca.cli.terminal import fitted
 from loaded_tca.errors import AccuracyWarning, InputError, NotAskedError
 from loaded_tca.output.tables import sensitivities_csv, sensitivities_text
 from loaded_tca.results import default_tolerances, key_figure_slopes
@@ -137,7 +139,14 @@ def test_tables_have_root_tension_where_the_scene_asks_for_it():
         for gear, name in enumerate(("pinion_root_tension_MPa", "wheel_root_tension_MPa")):
             assert_allclose(slopes[name][0], found.root_tension[0, at[gear], gear])
             assert f"{name}_per_tolerance" in sensitivities_csv(found, default_tolerances(cycle.scene, keys))
-        assert "wheel tension" in sensitivities_text(found, default_tolerances(cycle.scene, keys), 0)
+        text = sensitivities_text(found, default_tolerances(cycle.scene, keys), 0)
+        heads, units, numbers = (fitted(line, 90, sentences=False).split("\n") for line in text.split("\n")[1:4])
+        assert len(heads) == 2
+        for parts in zip(heads, units, numbers, strict=True):  # each number goes on below its name and unit
+            ends = [[cell.end() for cell in re.finditer(r"\S+(?: \S+)*", part)] for part in parts]
+            assert {one[-1] for one in ends} == {len(parts[0])}
+            assert ends[0][1:] == ends[1][-len(ends[0]) + 1 :] == ends[2][1:]
+        assert "wheel tension" in heads[1]
         assert found.dataset["root_tension"].dims == ("torque", "position", "gear", "key")
         assert found.spread({CROWNING: 1.0})["root_compression"].dims == ("torque", "position", "gear")
 

@@ -264,9 +264,7 @@ def test_derivatives_of_one_strip_are_told_beside_those_through_three(monkeypatc
     assert_allclose(through, 0.0, atol=1e-12)  # three products of slopes of 0.1
     words = r"by -0\.012 per mm, while .* derivative is \S+ \(second_mm; 1 of 2 keys\)"
     with pytest.warns(AccuracyWarning, match=words):
-        warn_of_strips_beside(
-            ["first_mm", "second_mm"], np.array([[1.0, slopes[1]]]), np.array([[1.05, through[0]]]), stacklevel=1
-        )
+        warn_of_strips_beside(["first_mm", "second_mm"], np.array([[1.0, slopes[1]]]), np.array([[1.05, through[0]]]))
     forces[0] = 2.0
     assert [part[0] for _, part in top_strips(result)] == [1.0, 0.0, 0.0]  # at an end of the face there is none beside
 
@@ -289,7 +287,7 @@ def test_kinks_are_told_by_their_part_of_what_changes_over_the_positions(spread,
     """Derivatives of 100 at both positions: a kink of 0.2 matters to the peak to peak where they differ by 1."""
     slopes, kinks = np.array([[[100.0], [100.0 + spread]]]), np.array([[[0.2], [0.0]]])
     with noted_accuracy_warnings(given=False) as sentences:
-        warn_of_edges([OFFSET], slopes, kinks, 1.0, 1)
+        warn_of_edges([OFFSET], slopes, kinks, 1.0)
     assert len(sentences) == count
 
 

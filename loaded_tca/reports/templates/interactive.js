@@ -151,7 +151,7 @@ function drawResult(data, array) {
     byId("torque-shown").textContent = data.torques[torque];
     inputs.position.setAttribute("aria-valuetext", data.positions[position]);
     inputs.torque.setAttribute("aria-valuetext", data.torques[torque]);
-    const numbers = data.panels.slice(0, 3).map((panel) => {
+    const numbers = data.panels.slice(0, 4).map((panel) => {
       const values = panel.lines.map((line) => `${line.name} ${plain(line.values[torque][position])}`);
       return `${panel.title} [${panel.unit}]: ${values.join(", ")}`;
     });
@@ -340,7 +340,7 @@ function teethIn(data, array, maps) {
   const PINION = "#8fa3b3", WHEEL = "#c9b68a";
   const DIVERGING = [[0, "#053061"], [0.25, "#4393c3"], [0.5, "#f7f7f7"], [0.75, "#d6604d"], [1, "#67001f"]]; // blue: compression
   const points = solids.map((solid) => array(solid.vertices)), triangles = solids.map((solid) => array(solid.triangles));
-  let last = null, base = null;
+  let last = null, base = null, reach = null;
 
   /** Coordinates x, y, z of points of a gear in space, where it is turned by an angle and moved off its place [mm]. */
   function placed(gear, values, angle, off) {
@@ -417,9 +417,19 @@ function teethIn(data, array, maps) {
   /** Where the light stands: where the flank is seen from. */
   const lamp = () => Object.fromEntries(base.map((value, k) => ["xyz"[k], 1e5 * value]));
 
+  /** Distance of the camera from which the sphere around some traces is in view, in Plotly's units: the box has the volume 1. */
+  function farEnough(traces) {
+    const sides = ["x", "y", "z"].map((axis) => {
+      const [low, high] = traces.flatMap((trace) => Array.from(trace[axis])).reduce(([least, most], value) => [Math.min(least, value), Math.max(most, value)], [Infinity, -Infinity]);
+      return high - low;
+    });
+    const angle = Math.PI / 8; // half the angle of view
+    return 0.5 * Math.hypot(...sides) / Math.cbrt(sides[0] * sides[1] * sides[2]) / Math.sin(angle);
+  }
+
   /** Camera after the controls: the direction, turned about z and tilted, so far away. */
   function camera() {
-    const [turn, tilt] = ["turn", "tilt"].map((id) => Number(byId(id).value) * Math.PI / 180), distance = 1.9 / Number(byId("zoom").value);
+    const [turn, tilt] = ["turn", "tilt"].map((id) => Number(byId(id).value) * Math.PI / 180), distance = reach / Number(byId("zoom").value);
     const azimuth = Math.atan2(base[1], base[0]) + turn, limit = 0.49 * Math.PI;
     const elevation = Math.max(-limit, Math.min(limit, Math.atan2(base[2], Math.hypot(base[0], base[1])) + tilt));
     const eye = { x: distance * Math.cos(elevation) * Math.cos(azimuth), y: distance * Math.cos(elevation) * Math.sin(azimuth), z: distance * Math.sin(elevation) };
@@ -443,6 +453,7 @@ function teethIn(data, array, maps) {
       const largest = Math.max(...root.map((gear) => array(gear[name]).reduce((most, value) => Math.max(most, Math.abs(value) || 0), 0))) || 1;
       angles.forEach((angle, gear) => (gear === 1 && wheel === 0) || traces.push(fillets(gear, angle, offs[gear], name, torque, largest)));
     }
+    reach ??= farEnough(traces);
     const scene = { aspectmode: "data", camera: camera(), xaxis: axis("x [mm]"), yaxis: axis("y [mm]"), zaxis: axis("z [mm]"),
       uirevision: ["turn", "tilt", "zoom"].map((id) => byId(id).value).join() };
     Plotly.react("space", traces, layoutOf({ scene, margin: { l: 0, r: 0, t: 0, b: 0 } }), CONFIG);
