@@ -3897,6 +3897,13 @@ FAULTS = (
         "math.degrees(mesh.working_pressure_angle)",
         "scene/test_rack_scene.py::test_check_has_the_pressure_angle_of_the_basic_rack_at_any_distance",
     ),
+    Fault(
+        "import: a torque that is asked for leaves the forces of other stages",
+        "exchange/shafts.py",
+        "        torque *= self.torque_factor\n",
+        "",
+        "exchange/test_shafts.py::test_torque_asked_for_scales_the_forces_of_other_stages",
+    ),
 )
 
 

@@ -42,6 +42,8 @@ RACK = {
 }
 """Numbers of a basic rack -> attributes of the tool that cuts it: over the module, and as a length."""
 TORQUE_DIGITS = 9
+ROUNDING = 1e-9
+"""Relative difference of two torques that are the same."""
 """Of torques that follow from a balance [N m]."""
 DIGITS = 6
 """Of amounts in um: digits of mm in files end in rounding."""
@@ -59,6 +61,8 @@ class Operation:
         +1 where the teeth turn the pinion back about z: flanks whose outward normal has a positive azimuthal part.
     driving, sense : str
     speed : float [1/min] or None
+    torque_factor : float
+        The torque over that of the file.
     """
 
     torque: float
@@ -66,6 +70,7 @@ class Operation:
     driving: str
     sense: str
     speed: float | None
+    torque_factor: float
 
 
 def gear_data(reading: Reading, stage: Stage) -> list[Component | None]:
@@ -115,7 +120,8 @@ def operation_of(gearbox: Gearbox, stage: Stage, torque: float | None) -> Operat
     reading.touch(one for one in data if one is not None)
     by_balance = gearbox.tooth_torques.get(stage.id)
     of_file = _stated_torque(reading, stage, data)
-    magnitude = next((abs(one) for one in (torque, of_file, by_balance) if one), None)
+    in_file = next((abs(one) for one in (of_file, by_balance) if one), None)
+    magnitude = abs(torque) if torque else in_file
     if magnitude is None:
         raise InputError(
             f"stage {stage.id}: torque: missing in the stage, and not to be had from the loads on the shafts; give "
@@ -136,7 +142,22 @@ def operation_of(gearbox: Gearbox, stage: Stage, torque: float | None) -> Operat
         driving,
         "positive" if turning > 0 else "negative",
         abs(speed) if speed else None,
+        _torque_factor(reading, stage, magnitude, in_file),
     )
+
+
+def _torque_factor(reading: Reading, stage: Stage, torque: float, in_file: float | None) -> float:
+    """Torque on the pinion over that of the file [N m]; 1 where the file has none."""
+    beside = "torques of other stages and loads"
+    if in_file is None:
+        reading.note(f"stage {stage.id}: {beside} are those of the file, which has no torque of the stage")
+        return 1.0
+    factor = torque / in_file
+    if math.isclose(factor, 1.0, rel_tol=ROUNDING):
+        return 1.0
+    of_file = f"the torque asked for over that of the file, {plain(in_file, 6)} N m"
+    reading.note(f"stage {stage.id}: {beside} are {plain(factor, 6)} times those of the file, {of_file}")
+    return factor
 
 
 def _stated_torque(reading: Reading, stage: Stage, data: list[Component | None]) -> float | None:
