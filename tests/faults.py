@@ -3904,6 +3904,20 @@ FAULTS = (
         "",
         "exchange/test_shafts.py::test_torque_asked_for_scales_the_forces_of_other_stages",
     ),
+    Fault(
+        "coast side: measured flanks of single teeth stand for the other side of their teeth",
+        "scene/sections.py",
+        'flanks = (("flank", self.flank), *of_teeth)',
+        'flanks = (("flank", self.flank), *list(of_teeth)[:0])',
+        "scene/test_coast_side.py::test_measured_flanks_of_half_b_and_of_single_teeth_are_one_side_too",
+    ),
+    Fault(
+        "coast side: measured flanks of half b stand for the other side of their teeth",
+        "scene/double_helical.py",
+        '(("half_b.flank.form",) if is_measured else ())',
+        "()",
+        "scene/test_coast_side.py::test_measured_flanks_of_half_b_and_of_single_teeth_are_one_side_too",
+    ),
 )
 
 

@@ -111,9 +111,7 @@ class ShaftFrame:
         Turns vectors along u, v, w of the shaft into x, y, z of the gear's own frame.
     """
 
-    def __init__(
-        self, gearbox: Gearbox, stage: Stage, gear: int, shaft: Component, torque_factor: float = 1.0
-    ) -> None:
+    def __init__(self, gearbox: Gearbox, stage: Stage, gear: int, shaft: Component, torque_factor: float = 1.0) -> None:
         self.gearbox, self.reading, self.stage, self.gear, self.shaft = gearbox, gearbox.reading, stage, gear, shaft
         self.torque_factor = torque_factor
         self.middle = gearbox.place_on_shaft(stage.gears[gear], shaft)
