@@ -483,6 +483,14 @@ SPECTRUM_BETWEEN = Kind(
     "more torques in `analysis.torques_Nm`, up to the largest of the spectrum; where their results scatter, more "
     "`cells`",
 )
+CONSTANT_LOADS = Kind(
+    "the loads on the shaft of the {gear} are the same under all {count} torques",
+    "`[[pinion.shaft.loads]]` and `[[wheel.shaft.loads]]` have one value each. Forces of other stages on a shaft grow "
+    "with the torque: under other torques than theirs the tilt of the gear, K_Hbeta and pressures are wrong, and so is "
+    "the damage of their bins",
+    "one scene for each torque, each with its own loads; of a gearbox model `loaded-tca import --torque` or "
+    "`--load-case`. Loads that do not depend on the torque, as those of belts or weights, are right",
+)
 PITCH_DEVIATIONS = Kind(
     "the gears have runout or teeth that differ; an analysis of one pitch leaves this out and takes all teeth as alike",
     "pitch deviations, flanks of single teeth and eccentricity repeat with each turn of their gear, not with each "

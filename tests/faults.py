@@ -3918,6 +3918,27 @@ FAULTS = (
         "()",
         "scene/test_coast_side.py::test_measured_flanks_of_half_b_and_of_single_teeth_are_one_side_too",
     ),
+    Fault(
+        "import: modifications of the flank without load are left out without a word",
+        "exchange/gears.py",
+        "    if of_other != of_chosen:\n",
+        "    if of_other < of_other:\n",
+        "exchange/test_stage.py::test_modifications_of_the_flank_without_load_are_named",
+    ),
+    Fault(
+        "import: loads of one case stand in every bin of a spectrum without a word",
+        "exchange/stage.py",
+        "    if cases:\n        _note_constant(",
+        "    if not cases:\n        _note_constant(",
+        "exchange/test_strength.py::test_what_all_bins_of_a_spectrum_share_is_told",
+    ),
+    Fault(
+        "loads on shafts are the same under several torques without a warning",
+        "results/gear_warnings.py",
+        "        *_constant_loads(scene),\n",
+        "",
+        "results/test_gear_warnings.py::test_loads_on_shafts_are_warned_of_under_several_torques",
+    ),
 )
 
 

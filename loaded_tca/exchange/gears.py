@@ -15,6 +15,7 @@ from loaded_tca.errors import InputError, require
 from loaded_tca.exchange.gearbox import Gearbox, Stage
 from loaded_tca.exchange.model import (
     ANGLE,
+    BOOKKEEPING,
     CONDUCTIVITY,
     DENSITY,
     HEAT,
@@ -221,6 +222,24 @@ def _compare_flanks(reading: Reading, chosen: Component, other: Component) -> No
     ]
     if differing:
         reading.leave(other, f"the flank without load has another {' and '.join(differing)}")
+    of_chosen, of_other = (_modifications(reading, flank) for flank in (chosen, other))
+    if of_other != of_chosen:
+        listed = "; ".join(of_other) or "none"
+        reading.leave(other, f"modifications of the flank without load, which differ from the loaded one: {listed}")
+
+
+def _modifications(reading: Reading, flank: Component) -> list[str]:
+    """Modifications of a flank with what the file says of each."""
+    listed = []
+    for one in reading.model.related("reference", "origin", flank.id, "referenced"):
+        if one.type != "material":
+            values = ", ".join(
+                f"{name} {each.value}" + (f" {each.unit}" if each.unit != "none" else "")
+                for name, each in one.attributes.items()
+                if name not in BOOKKEEPING
+            )
+            listed.append(f"{one.type} ({values})")
+    return sorted(listed)
 
 
 def tools_of(reading: Reading, gear: Component, flank: Component | None) -> list[Component]:

@@ -109,6 +109,16 @@ def _note_loads(reading: Reading, load_case: str | None, bins: int) -> None:
         )
 
 
+def _note_constant(reading: Reading, stage: Stage, table: Mapping[str, Any], torque: float) -> None:
+    """Note what a scene has alike in all bins of a spectrum: loads on the shafts, modifications of both flanks."""
+    for name, shaft in zip(GEARS, stage.shafts, strict=True):
+        if table[name].get("shaft", {}).get("loads"):
+            under = f"those under the torques of the components themselves, {plain(torque, 6)} N m on the pinion"
+            reading.note(f"{shaft}: its loads are the same in every bin of the spectrum, {under}")
+    if any(case.get("reversed") for case in table["load"]["case"]):
+        reading.note("reversed bins load the other flanks; the scene gives these the modifications of the loaded ones")
+
+
 def _teeth(gear: Component) -> str:
     number = gear.number("number_of_teeth")
     return "?" if number is None else f"{plain(number, 6)}"
@@ -180,6 +190,8 @@ def import_stage(
         scene = scene_from_table(table)
         for n in range(len(GEARS)):
             scene = _with_shaft(gearbox, chosen, n, table, scene, run.torque_factor)
+    if cases:
+        _note_constant(reading, chosen, table, run.torque)
     return ImportedStage(
         scene,
         table,

@@ -60,6 +60,7 @@ def warn_of_gears(scene: Scene, pair: GearPair, *, whole_revolution: bool = Fals
         *_odd_inputs(scene),
         *_small_clearances(scene, pair),
         *_notches(scene),
+        *_constant_loads(scene),
     ]:
         give_accuracy_warning(sentence, stacklevel=3)
     if scene.has_pitch_deviations and not whole_revolution:
@@ -137,6 +138,16 @@ def _notches(scene: Scene) -> list[str]:
         kinds.NOTCH.sentence(gear=gear, depth=1e3 * depth, percent=100.0 * (notch_factor(depth, radius) - 1.0))
         for gear, (depth, radius) in zip(GEARS, scene.grinding_notches, strict=False)
         if depth > 0.0
+    ]
+
+
+def _constant_loads(scene: Scene) -> list[str]:
+    """Sentences on loads on shafts under several torques, to analyse or of a load spectrum."""
+    torques = {*scene.torques, *(1e3 * case.torque_Nm for case in scene.load.case or ())} - {0.0}
+    return [
+        kinds.CONSTANT_LOADS.sentence(gear=name, count=len(torques))
+        for name, gear in zip(GEARS, (scene.pinion, scene.wheel), strict=True)
+        if len(torques) > 1 and gear.shaft is not None and gear.shaft.loads
     ]
 
 
