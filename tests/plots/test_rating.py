@@ -42,6 +42,7 @@ def test_bins_of_another_strength_stand_on_their_side_of_the_curve():
 
 
 @pytest.mark.parametrize("torques", [(), np.linspace(100.0, 200.0, 45)])
+@pytest.mark.filterwarnings("ignore:rating. the damage of the spectrum has no estimate")  # two torques
 def test_bars_add_up_to_the_damage(torques):
     one = rated(torques)
     axes = plot_damage(one).axes[1]
@@ -55,6 +56,7 @@ def test_bars_add_up_to_the_damage(torques):
     assert axes.get_ylabel() == "damage in 20000 h [-]"
 
 
+@pytest.mark.filterwarnings("ignore:rating. the damage of the spectrum has no estimate")  # two torques
 def test_bars_of_one_torque_stand_at_that_torque_alone():
     one = rated([150.0])
     axes = plot_damage(one).axes[1]
