@@ -492,6 +492,27 @@ SPECTRUM_BETWEEN = Kind(
     "more torques in `analysis.torques_Nm`, up to the largest of the spectrum; where their results scatter, more "
     "`cells`",
 )
+SPECTRUM_UNKNOWN = Kind(
+    "rating: the damage of the spectrum has no estimate of its error: {count} analysed torques of at least {fewest}",
+    "damage grows with a high power of the stress, and the curve of the stress over the torque bends where contacts "
+    "come to edges, reliefs and further tooth pairs. The estimate leaves out every second torque, which takes "
+    "four of them",
+    "more torques in `analysis.torques_Nm`, up to the largest of the spectrum",
+)
+NARROW_FACE = Kind(
+    "the face is {width:.2g} modules wide, less than {least:g}: K_Hbeta has no bound of its error",
+    "each end of the face is softened as if the other end were far away, so that the load of a narrow face crowds at "
+    "both: K_Hbeta of an even load is up to 1.1 on faces of 0.6 modules and 2 on 0.1 modules instead of 1",
+    "take K_Hbeta and pressures near the ends as estimates only, or use finite elements",
+)
+CONSTANT_LOADS = Kind(
+    "the loads on the shaft of the {gear} are the same under all {count} torques",
+    "`[[pinion.shaft.loads]]` and `[[wheel.shaft.loads]]` have one value each. Forces of other stages on a shaft grow "
+    "with the torque: under other torques than theirs the tilt of the gear, K_Hbeta and pressures are wrong, and so is "
+    "the damage of their bins",
+    "one scene for each torque, each with its own loads; of a gearbox model `loaded-tca import --torque` or "
+    "`--load-case`. Loads that do not depend on the torque, as those of belts or weights, are right",
+)
 PITCH_DEVIATIONS = Kind(
     "the gears have runout or teeth that differ; an analysis of one pitch leaves this out and takes all teeth as alike",
     "pitch deviations, flanks of single teeth and eccentricity repeat with each turn of their gear, not with each "

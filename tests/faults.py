@@ -3961,6 +3961,62 @@ FAULTS = (
         "self.pitches % teeth == 0) &",
         "test_revolution.py::test_orders_of_a_gear_that_makes_no_whole_turn_leak_where_they_lie",
     ),
+    Fault(
+        "import: a torque that is asked for leaves the forces of other stages",
+        "exchange/shafts.py",
+        "        torque *= self.torque_factor\n",
+        "",
+        "exchange/test_shafts.py::test_torque_asked_for_scales_the_forces_of_other_stages",
+    ),
+    Fault(
+        "coast side: measured flanks of single teeth stand for the other side of their teeth",
+        "scene/sections.py",
+        'flanks = (("flank", self.flank), *of_teeth)',
+        'flanks = (("flank", self.flank), *list(of_teeth)[:0])',
+        "scene/test_coast_side.py::test_measured_flanks_of_half_b_and_of_single_teeth_are_one_side_too",
+    ),
+    Fault(
+        "coast side: measured flanks of half b stand for the other side of their teeth",
+        "scene/double_helical.py",
+        '(("half_b.flank.form",) if is_measured else ())',
+        "()",
+        "scene/test_coast_side.py::test_measured_flanks_of_half_b_and_of_single_teeth_are_one_side_too",
+    ),
+    Fault(
+        "import: modifications of the flank without load are left out without a word",
+        "exchange/gears.py",
+        "    if of_other != of_chosen:\n",
+        "    if of_other < of_other:\n",
+        "exchange/test_stage.py::test_modifications_of_the_flank_without_load_are_named",
+    ),
+    Fault(
+        "import: loads of one case stand in every bin of a spectrum without a word",
+        "exchange/stage.py",
+        "    if cases:\n        _note_constant(",
+        "    if not cases:\n        _note_constant(",
+        "exchange/test_strength.py::test_what_all_bins_of_a_spectrum_share_is_told",
+    ),
+    Fault(
+        "loads on shafts are the same under several torques without a warning",
+        "results/gear_warnings.py",
+        "        *_constant_loads(scene),\n",
+        "",
+        "results/test_gear_warnings.py::test_loads_on_shafts_are_warned_of_under_several_torques",
+    ),
+    Fault(
+        "rating: a damage between two or three solved torques is shown without a warning",
+        "rating/spectrum.py",
+        "solved < FEWEST_SOLVED and np.isnan(error).any()",
+        "solved < FEWEST_SOLVED and np.isinf(error).any()",
+        "rating/test_spectrum.py::test_damage_between_fewer_than_four_solved_torques_has_no_estimate_and_says_so",
+    ),
+    Fault(
+        "narrow faces: K_Hbeta by ends that soften each other has an error of a few per cent",
+        "results/load_factors.py",
+        "    return pair.face_width < NARROWEST_FACE * pair.module\n",
+        "    return False\n",
+        "results/test_load_factors.py::test_face_load_factor_of_a_narrow_face_has_no_bound_of_its_error",
+    ),
 )
 
 

@@ -15,6 +15,7 @@ from loaded_tca.errors import InputError, require
 from loaded_tca.exchange.gearbox import Gearbox, Stage
 from loaded_tca.exchange.model import (
     ANGLE,
+    BOOKKEEPING,
     CONDUCTIVITY,
     DENSITY,
     HEAT,
@@ -42,6 +43,8 @@ RACK = {
 }
 """Numbers of a basic rack -> attributes of the tool that cuts it: over the module, and as a length."""
 TORQUE_DIGITS = 9
+ROUNDING = 1e-9
+"""Relative difference of two torques that are the same."""
 """Of torques that follow from a balance [N m]."""
 DIGITS = 6
 """Of amounts in um: digits of mm in files end in rounding."""
@@ -59,6 +62,8 @@ class Operation:
         +1 where the teeth turn the pinion back about z: flanks whose outward normal has a positive azimuthal part.
     driving, sense : str
     speed : float [1/min] or None
+    torque_factor : float
+        The torque over that of the file.
     """
 
     torque: float
@@ -66,6 +71,7 @@ class Operation:
     driving: str
     sense: str
     speed: float | None
+    torque_factor: float
 
 
 def gear_data(reading: Reading, stage: Stage) -> list[Component | None]:
@@ -115,7 +121,8 @@ def operation_of(gearbox: Gearbox, stage: Stage, torque: float | None) -> Operat
     reading.touch(one for one in data if one is not None)
     by_balance = gearbox.tooth_torques.get(stage.id)
     of_file = _stated_torque(reading, stage, data)
-    magnitude = next((abs(one) for one in (torque, of_file, by_balance) if one), None)
+    in_file = next((abs(one) for one in (of_file, by_balance) if one), None)
+    magnitude = abs(torque) if torque else in_file
     if magnitude is None:
         raise InputError(
             f"stage {stage.id}: torque: missing in the stage, and not to be had from the loads on the shafts; give "
@@ -136,7 +143,22 @@ def operation_of(gearbox: Gearbox, stage: Stage, torque: float | None) -> Operat
         driving,
         "positive" if turning > 0 else "negative",
         abs(speed) if speed else None,
+        _torque_factor(reading, stage, magnitude, in_file),
     )
+
+
+def _torque_factor(reading: Reading, stage: Stage, torque: float, in_file: float | None) -> float:
+    """Torque on the pinion over that of the file [N m]; 1 where the file has none."""
+    beside = "torques of other stages and loads"
+    if in_file is None:
+        reading.note(f"stage {stage.id}: {beside} are those of the file, which has no torque of the stage")
+        return 1.0
+    factor = torque / in_file
+    if math.isclose(factor, 1.0, rel_tol=ROUNDING):
+        return 1.0
+    of_file = f"the torque asked for over that of the file, {plain(in_file, 6)} N m"
+    reading.note(f"stage {stage.id}: {beside} are {plain(factor, 6)} times those of the file, {of_file}")
+    return factor
 
 
 def _stated_torque(reading: Reading, stage: Stage, data: list[Component | None]) -> float | None:
@@ -200,6 +222,24 @@ def _compare_flanks(reading: Reading, chosen: Component, other: Component) -> No
     ]
     if differing:
         reading.leave(other, f"the flank without load has another {' and '.join(differing)}")
+    of_chosen, of_other = (_modifications(reading, flank) for flank in (chosen, other))
+    if of_other != of_chosen:
+        listed = "; ".join(of_other) or "none"
+        reading.leave(other, f"modifications of the flank without load, which differ from the loaded one: {listed}")
+
+
+def _modifications(reading: Reading, flank: Component) -> list[str]:
+    """Modifications of a flank with what the file says of each."""
+    listed = []
+    for one in reading.model.related("reference", "origin", flank.id, "referenced"):
+        if one.type != "material":
+            values = ", ".join(
+                f"{name} {each.value}" + (f" {each.unit}" if each.unit != "none" else "")
+                for name, each in one.attributes.items()
+                if name not in BOOKKEEPING
+            )
+            listed.append(f"{one.type} ({values})")
+    return sorted(listed)
 
 
 def tools_of(reading: Reading, gear: Component, flank: Component | None) -> list[Component]:

@@ -33,7 +33,7 @@ class NotTaken(Exception):  # noqa: N818
     """Why a shaft is left out of the scene."""
 
 
-def shaft_section(gearbox: Gearbox, stage: Stage, gear: int) -> dict[str, Any] | None:
+def shaft_section(gearbox: Gearbox, stage: Stage, gear: int, torque_factor: float = 1.0) -> dict[str, Any] | None:
     """Return the section [pinion.shaft] or [wheel.shaft]; None where the file has none that a scene can have.
 
     Parameters
@@ -42,12 +42,14 @@ def shaft_section(gearbox: Gearbox, stage: Stage, gear: int) -> dict[str, Any] |
     stage : Stage
     gear : int
         0 the pinion, 1 the wheel.
+    torque_factor : float
+        Torques of the scene over those of the file.
     """
     reading, shaft = gearbox.reading, stage.shafts[gear]
     if shaft is None:
         reading.leave(stage.gears[gear], f"it is on no shaft; {GEARS[gear]} without a support")
         return None
-    frame = ShaftFrame(gearbox, stage, gear, shaft)
+    frame = ShaftFrame(gearbox, stage, gear, shaft, torque_factor)
     reading.take(shaft, "rotational_speed", "defines_speed")
     try:
         if stage.internal and gear == 1:
@@ -96,6 +98,8 @@ class ShaftFrame:
     gear : int
         0 the pinion, 1 the wheel.
     shaft : Component
+    torque_factor : float
+        Torques of the scene over those of the file; forces of external loads are those of the file.
 
     Attributes
     ----------
@@ -107,8 +111,9 @@ class ShaftFrame:
         Turns vectors along u, v, w of the shaft into x, y, z of the gear's own frame.
     """
 
-    def __init__(self, gearbox: Gearbox, stage: Stage, gear: int, shaft: Component) -> None:
+    def __init__(self, gearbox: Gearbox, stage: Stage, gear: int, shaft: Component, torque_factor: float = 1.0) -> None:
         self.gearbox, self.reading, self.stage, self.gear, self.shaft = gearbox, gearbox.reading, stage, gear, shaft
+        self.torque_factor = torque_factor
         self.middle = gearbox.place_on_shaft(stage.gears[gear], shaft)
         x, y, z = stage.axes
         self.axes = np.stack([x, y, z] if gear == 0 else [-x, -y, z])
@@ -263,7 +268,10 @@ class ShaftFrame:
             load, "u_coordinate_on_shaft", "torque_around_u_axis", "power", "transmits_torque", "defines_torque"
         )
         at = self.at(load.required("u_coordinate_on_shaft", LENGTH))
-        return at, self.turn @ force, self.turn @ np.array([0.0, *about]), self.gearbox.load_torques.get(load.id, 0.0)
+        if self.torque_factor != 1.0 and (force.any() or any(about)):
+            self.reading.note(f"{load}: its forces, and its moments across the axis, are those of the file")
+        torque = self.torque_factor * self.gearbox.load_torques.get(load.id, 0.0)
+        return at, self.turn @ force, self.turn @ np.array([0.0, *about]), torque
 
     def _thrust(self) -> float:
         """Axial force of all gears on the shaft, along u [N]; 0 where a torque is not known."""
@@ -290,6 +298,7 @@ class ShaftFrame:
             if not quiet:
                 self.reading.leave(component, f"its load in stage {stage.id}, {reason}")
             return None
+        torque *= self.torque_factor
         if gear == 1:
             torque *= self.gearbox.torque_ratio(stage)
         working_angle, base_helix, base_radii = angles

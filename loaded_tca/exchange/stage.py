@@ -109,6 +109,16 @@ def _note_loads(reading: Reading, load_case: str | None, bins: int) -> None:
         )
 
 
+def _note_constant(reading: Reading, stage: Stage, table: Mapping[str, Any], torque: float) -> None:
+    """Note what a scene has alike in all bins of a spectrum: loads on the shafts, modifications of both flanks."""
+    for name, shaft in zip(GEARS, stage.shafts, strict=True):
+        if table[name].get("shaft", {}).get("loads"):
+            under = f"those under the torques of the components themselves, {plain(torque, 6)} N m on the pinion"
+            reading.note(f"{shaft}: its loads are the same in every bin of the spectrum, {under}")
+    if any(case.get("reversed") for case in table["load"]["case"]):
+        reading.note("reversed bins load the other flanks; the scene gives these the modifications of the loaded ones")
+
+
 def _teeth(gear: Component) -> str:
     number = gear.number("number_of_teeth")
     return "?" if number is None else f"{plain(number, 6)}"
@@ -128,7 +138,8 @@ def import_stage(
         Id of a load case, the torques and speeds of which hold; default: all of them as a load spectrum, if each has a
         duration or a share of the time, else those of the components themselves.
     torque_Nm : float, optional
-        Torque on the pinion [N m], instead of that of the model.
+        Torque on the pinion [N m], instead of that of the model. Torques of other stages and of loads on the shafts
+        change by the same factor; forces that the model gives to loads stay.
 
     Returns
     -------
@@ -177,8 +188,10 @@ def import_stage(
         _add_bores(gearbox, chosen, table, mesh)
         _add_modifications(gearbox, chosen, flanks, table, mesh)
         scene = scene_from_table(table)
-        for n, name in enumerate(GEARS):
-            scene = _with_shaft(gearbox, chosen, n, table, scene, name)
+        for n in range(len(GEARS)):
+            scene = _with_shaft(gearbox, chosen, n, table, scene, run.torque_factor)
+    if cases:
+        _note_constant(reading, chosen, table, run.torque)
     return ImportedStage(
         scene,
         table,
@@ -252,10 +265,12 @@ def _add_modifications(
             table[name]["modifications"] = keys
 
 
-def _with_shaft(gearbox: Gearbox, stage: Stage, gear: int, table: dict[str, Any], scene: Scene, name: str) -> Scene:
+def _with_shaft(
+    gearbox: Gearbox, stage: Stage, gear: int, table: dict[str, Any], scene: Scene, torque_factor: float
+) -> Scene:
     """Scene with the shaft of a gear, if it can be: one that its bearings do not hold is left."""
-    section = shaft_section(gearbox, stage, gear)
-    shaft = stage.shafts[gear]
+    section = shaft_section(gearbox, stage, gear, torque_factor)
+    name, shaft = GEARS[gear], stage.shafts[gear]
     if section is None or shaft is None:
         return scene
     material, of_gear = material_section(gearbox.reading, shaft), scene.materials[gear]

@@ -12,6 +12,7 @@ import numpy as np
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array
 from loaded_tca.plain import apart, plain
+from loaded_tca.rating.interpolation import FEWEST_SOLVED
 from loaded_tca.rating.quantities import OF_SPECTRUM, SPECTRUM_NUMBERS
 from loaded_tca.rating.rating import WORDS, OfCases, Rating, all_figures
 from loaded_tca.rating.roots import REVERSED
@@ -45,7 +46,9 @@ def of_spectrum(
 
 
 def told_error(error: Array, solved: int) -> list[str]:
-    """Sentence of the warning where the error of damages (gear, mode) is large, between a number of solved torques."""
+    """Sentence of the warning where the error of damages (gear, mode) is large, or of too few torques unknown."""
+    if solved < FEWEST_SOLVED and np.isnan(error).any():
+        return [kinds.SPECTRUM_UNKNOWN.sentence(count=solved, fewest=FEWEST_SOLVED)]
     largest = float(np.nanmax(error)) if np.isfinite(error).any() else nan
     return [kinds.SPECTRUM_BETWEEN.sentence(change=largest, count=solved)] if largest > TOLD else []
 

@@ -12,6 +12,7 @@ from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.gears.protuberance import notch_factor
 from loaded_tca.plain import plain
 from loaded_tca.reference.iso6336_3 import THIN_RIM
+from loaded_tca.results.load_factors import NARROWEST_FACE, is_narrow
 from loaded_tca.scene.build import arguments_by_keys
 from loaded_tca.scene.section import values_of
 
@@ -60,6 +61,8 @@ def warn_of_gears(scene: Scene, pair: GearPair, *, whole_revolution: bool = Fals
         *_odd_inputs(scene),
         *_small_clearances(scene, pair),
         *_notches(scene),
+        *_constant_loads(scene),
+        *_narrow_face(pair),
     ]:
         give_accuracy_warning(sentence)
     if scene.has_pitch_deviations and not whole_revolution:
@@ -137,6 +140,22 @@ def _notches(scene: Scene) -> list[str]:
         kinds.NOTCH.sentence(gear=gear, depth=1e3 * depth, percent=100.0 * (notch_factor(depth, radius) - 1.0))
         for gear, (depth, radius) in zip(GEARS, scene.grinding_notches, strict=False)
         if depth > 0.0
+    ]
+
+
+def _narrow_face(pair: GearPair) -> list[str]:
+    """A sentence on a face whose ends are close together."""
+    width = pair.face_width / pair.module
+    return [kinds.NARROW_FACE.sentence(width=width, least=NARROWEST_FACE)] if is_narrow(pair) else []
+
+
+def _constant_loads(scene: Scene) -> list[str]:
+    """Sentences on loads on shafts under several torques, to analyse or of a load spectrum."""
+    torques = {*scene.torques, *(1e3 * case.torque_Nm for case in scene.load.case or ())} - {0.0}
+    return [
+        kinds.CONSTANT_LOADS.sentence(gear=name, count=len(torques))
+        for name, gear in zip(GEARS, (scene.pinion, scene.wheel), strict=True)
+        if len(torques) > 1 and gear.shaft is not None and gear.shaft.loads
     ]
 
 

@@ -235,7 +235,8 @@ class MeshCycle(CycleNumbers, AnalysisResult):
         -----
         AccuracyWarning
             Where an edge of a flank, which local safeties leave out, has more than the peak pressure, or stresses
-            between the torques that were solved may make the damage of a spectrum wrong by more than 1 %.
+            between the torques that were solved may make the damage of a spectrum wrong by more than 1 %, or by a part
+            of which fewer than four solved torques give no estimate.
 
         Examples
         --------

@@ -149,6 +149,13 @@ class GearSection(cylindrical.GearSection):
         of_half_b = None if self.half_b is None else self.half_b.pitch
         return super().teeth_differ or self.apex_runout_um > 0.0 or (of_half_b is not None and of_half_b.is_given)
 
+    @property
+    def measured_flanks(self) -> tuple[str, ...]:
+        """Keys of the flanks of both halves that are measured, in the section of the gear."""
+        of_half_b = None if self.half_b is None else self.half_b.flank
+        is_measured = of_half_b is not None and of_half_b.form == "measured"
+        return super().measured_flanks + (("half_b.flank.form",) if is_measured else ())
+
     def apex(self) -> Array:
         """Where the apex of the teeth lies as each of them meshes (teeth,) [mm], positive towards half a."""
         turned = 2.0 * math.pi / self.teeth * np.arange(self.teeth) - math.radians(self.apex_runout_phase_deg)

@@ -201,7 +201,8 @@ class Scene(InNotebooks, WithStandards, ABC):
         Raises
         ------
         InputError
-            If a flank is measured: the scene has no measurement of the other side of its teeth.
+            If a flank is measured, also that of half b or of a single tooth: the scene has no measurement of the other
+            side of its teeth.
 
         Examples
         --------
@@ -211,10 +212,8 @@ class Scene(InNotebooks, WithStandards, ABC):
         'wheel'
         """
         gears = {"pinion": self.pinion, "wheel": self.wheel}
-        measured = [name for name, gear in gears.items() if gear.flank.form == "measured"]
-        require(
-            *((False, f'{name}.flank.form: "measured" is one side of the teeth; allowed others') for name in measured)
-        )
+        measured = [f"{name}.{key}" for name, gear in gears.items() for key in gear.measured_flanks]
+        require(*((False, f'{key}: "measured" is one side of the teeth; allowed others') for key in measured))
         changes: dict[str, Any] = {"pair.driving": "wheel" if self.driving == "pinion" else "pinion"}
         changes["pair.sense"] = self.sense
         if hasattr(self.geometry, "pinion_flank"):

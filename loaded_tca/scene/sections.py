@@ -255,6 +255,13 @@ class GearSection(Section):
         """Whether a tooth has a place or flanks of its own."""
         return bool(self.tooth) or (self.pitch is not None and self.pitch.is_given)
 
+    @property
+    def measured_flanks(self) -> tuple[str, ...]:
+        """Keys of the flanks that are measured, those of single teeth too, in the section of the gear."""
+        of_teeth = ((f"tooth[{n}].flank", tooth.flank) for n, tooth in enumerate(self.tooth or ()))
+        flanks = (("flank", self.flank), *of_teeth)
+        return tuple(f"{key}.form" for key, flank in flanks if flank is not None and flank.form == "measured")
+
     def kinds_of_teeth(self) -> tuple[Indices, list[dict[str, Section]]]:
         """Kind of every tooth (teeth,), 0 where it is as the others, and the sections that each kind has of its own."""
         kinds: list[dict[str, Section]] = [{}]

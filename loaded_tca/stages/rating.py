@@ -241,12 +241,12 @@ def stage_rating_of(result: StageResult, *, warn: bool = True) -> StageRating:
 
 def _warned(meshes: tuple[Rating, Rating]) -> list[str]:
     """Warnings of both meshes in the words of the stage; that of interpolation is told of the gears."""
-    of_interpolation = kinds.SPECTRUM_BETWEEN.words
+    of_interpolation = kinds.SPECTRUM_BETWEEN, kinds.SPECTRUM_UNKNOWN
     sentences = (
         words_of(gears, sentence)
         for gears, rating in zip(MESHES.values(), meshes, strict=True)
         for sentence in rating.warnings or ()
-        if of_interpolation not in sentence
+        if not any(kind.words in sentence for kind in of_interpolation)
     )
     return list(dict.fromkeys(sentences))
 

@@ -238,6 +238,43 @@ def test_torque_of_the_stage_goes_before_the_balance() -> None:
     assert scene.load.pinion_torque_Nm == 390.0
 
 
+def test_torque_asked_for_scales_the_forces_of_other_stages() -> None:
+    """Gears in equilibrium under twice the torque: the scene of the model whose motor gives 300 N m instead of 150."""
+    imported = import_stage(example(), "10", torque_Nm=300.0)
+    doubled = import_stage(changed(attributes={"97.torque_around_u_axis": ("300", "N m")}), "10").scene
+    loads, expected = imported.scene.wheel.shaft.loads, doubled.wheel.shaft.loads
+    assert len(loads) == 1
+    assert_allclose(loads[0].force_N, expected[0].force_N, atol=2e-6)  # written with six digits after the point
+    assert_allclose(loads[0].moment_Nm, expected[0].moment_Nm, atol=2e-6)
+    assert imported.scene.load.pinion_torque_Nm == doubled.load.pinion_torque_Nm
+    note = "stage 10: torques of other stages and loads are 2 times those of the file, "
+    assert f"{note}the torque asked for over that of the file, 150 N m" in imported.read_as
+    assert not any("times those of the file" in one for one in import_stage(example(), "10", torque_Nm=150.0).read_as)
+
+
+def test_torque_asked_for_scales_torques_of_loads_and_leaves_their_forces() -> None:
+    """A pump on the input shaft takes 20 of 150 N m and presses with 40 N: half of 130 N m leaves it 10."""
+    pump = part(
+        99,
+        "external_load",
+        u_coordinate_on_shaft=(190.0, "mm"),
+        torque_around_u_axis=(-20.0, "N m"),
+        force_u_direction=(40.0, "N"),
+    )
+    model = changed(more=[pump], relations=[relation("assembly", assembly=3, part=99)])
+    imported = import_stage(model, "10", torque_Nm=65.0)
+    load = imported.scene.pinion.shaft.loads[0]
+    assert_allclose(load.moment_Nm, (0.0, 0.0, -10.0), atol=1e-6)
+    assert load.force_N == (0.0, 0.0, 40.0)
+    assert "external_load 99: its forces, and its moments across the axis, are those of the file" in imported.read_as
+
+
+def test_torques_of_other_stages_stay_where_the_file_has_none_of_the_stage() -> None:
+    imported = import_stage(changed(attributes={"97.torque_around_u_axis": None}), "10", torque_Nm=80.0)
+    note = "stage 10: torques of other stages and loads are those of the file, which has no torque of the stage"
+    assert note in imported.read_as
+
+
 def test_loads_of_a_stage_of_unknown_torque_are_named() -> None:
     torque = {"97.torque_around_u_axis": None, "31.torque": ("150", "N m")}
     imported = import_stage(changed(attributes=torque), "10")

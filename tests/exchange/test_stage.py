@@ -216,6 +216,21 @@ def test_a_driving_gear_is_that_of_the_file_without_a_speed() -> None:
     assert scene.operation is None
 
 
+def test_modifications_of_the_flank_without_load_are_named() -> None:
+    """The right flank of pinion 1 is the loaded one; the left one has 7 um of crowning of its own."""
+    model = example()
+    crowning = "helix_crowning_amount_datum_face 0.007 mm, helix_crowning_amount_non_datum_face 0.007 mm"
+    of_flank = "cylindrical_gear_flank 41: modifications of the flank without load, which differ from the loaded one"
+    assert f"{of_flank}: helix_crowning ({crowning})" in import_stage(model, "10").not_taken
+    others = [one for one in model.relations if one.type == "reference" and one.roles["origin"] != "41"]
+    none = import_stage(changed(without=["reference"], relations=others), "10").not_taken
+    assert f"{of_flank}: none" in none
+    of_right = [one.roles["referenced"] for one in others if one.roles["origin"] == "42"]
+    same = [relation("reference", origin=41, referenced=one) for one in of_right]
+    alike = import_stage(changed(without=["reference"], relations=[*others, *same]), "10").not_taken
+    assert not any(one.startswith(of_flank) for one in alike)
+
+
 def test_flanks_that_differ_are_named() -> None:
     imported = import_stage(changed(attributes={"41.addendum_modification_coefficient": (0.3, "none")}), "10")
     assert imported.scene.pinion.profile_shift == 0.25

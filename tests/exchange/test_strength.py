@@ -139,6 +139,18 @@ def test_share_that_no_load_case_has_is_idle(tmp_path):
     assert (idle.pinion_torque_Nm, idle.share) == (0.0, pytest.approx(0.3))
 
 
+def test_what_all_bins_of_a_spectrum_share_is_told(tmp_path):
+    """The wheel's shaft carries the second stage, whose forces are those of 150 N m in each bin; bin 2 is reversed."""
+    hours = {"operating_time": (90.0, "min")}, {"operating_time": (2.0, "h")}
+    read_as = import_stage(spectrum(tmp_path, hours), "10").read_as
+    alike = "its loads are the same in every bin of the spectrum, those under the torques of the components themselves"
+    assert [one for one in read_as if alike in one] == [f"shaft 4: {alike}, 150 N m on the pinion"]
+    reversed_bins = "reversed bins load the other flanks; the scene gives these the modifications of the loaded ones"
+    assert reversed_bins in read_as
+    alone = import_stage(spectrum(tmp_path, hours), "10", load_case="2").read_as
+    assert not any(alike in one or one == reversed_bins for one in alone)
+
+
 def test_times_of_some_load_cases_make_no_spectrum(tmp_path):
     imported = import_stage(spectrum(tmp_path, ({"operating_time": (2.0, "h")}, {})), "10")
     assert imported.scene.load.case is None

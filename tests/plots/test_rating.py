@@ -42,6 +42,7 @@ def test_bins_of_another_strength_stand_on_their_side_of_the_curve():
 
 
 @pytest.mark.parametrize("torques", [(), np.linspace(100.0, 200.0, 45)])
+@pytest.mark.filterwarnings("ignore:rating. the damage of the spectrum has no estimate")  # two torques
 def test_bars_add_up_to_the_damage(torques):
     one = rated(torques)
     axes = plot_damage(one).axes[1]
@@ -55,6 +56,7 @@ def test_bars_add_up_to_the_damage(torques):
     assert axes.get_ylabel() == "damage in 20000 h [-]"
 
 
+@pytest.mark.filterwarnings("ignore:rating. the damage of the spectrum has no estimate")  # two torques
 @pytest.mark.parametrize("torques", [(), np.linspace(100.0, 200.0, 45)])
 def test_panels_of_damage_have_axes_of_one_kind(torques):
     """Logarithmic, if the damages of one panel differ by more than a decade."""
@@ -65,6 +67,7 @@ def test_panels_of_damage_have_axes_of_one_kind(torques):
     assert {axes.get_yscale() for axes in panels} == {"log" if max(spans) >= 10.0 else "linear"}
 
 
+@pytest.mark.filterwarnings("ignore:rating. the damage of the spectrum has no estimate")  # two torques
 def test_bars_of_one_torque_stand_at_that_torque_alone():
     one = rated([150.0])
     axes = plot_damage(one).axes[1]

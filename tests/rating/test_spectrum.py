@@ -16,12 +16,15 @@ from loaded_tca.rating.cases import cases_of
 from loaded_tca.rating.findings import findings
 from loaded_tca.rating.places import worst_case
 from loaded_tca.rating.solved import SolvedLoads
+from loaded_tca.rating.spectrum import told_error
 from loaded_tca.rating.utilisation import utilisation_of
 from loaded_tca.reports.rating_page import rating_content
 from loaded_tca.studies import rating_figures
+from loaded_tca.warning_kinds import SPECTRUM_UNKNOWN, kind_of
 from tests.refusals import refusals
 from tests.samples.rating import HARD, bevel_solved, solved
 
+pytestmark = pytest.mark.filterwarnings("ignore:rating. the damage of the spectrum has no estimate")  # two torques
 KINDS = "flank", "root"
 ROUNDING = 1e-9  # exponents of S-N curves, up to 33, multiply rounding of stresses
 GIVEN = {"rating.dynamic_factor": "given", "rating.transverse_load_factor": 1.0, "rating.face_load_factor": 1.0}
@@ -215,6 +218,23 @@ def test_kinks_between_torques_are_told(monkeypatch):
     with pytest.warns(AccuracyWarning, match="rating: the damage of the spectrum may be wrong by"):
         rated = whole.rating()
     assert (rated.interpolation_error[:, 0] > 0.01).all()
+
+
+def test_damage_between_fewer_than_four_solved_torques_has_no_estimate_and_says_so():
+    changes = {"analysis.torques_Nm": (100.0, 200.0), "load.case": bins((200.0, 1.0), (120.0, 2.0))}
+    result = solved(**GIVEN | SLOPES | changes)
+    with pytest.warns(AccuracyWarning, match="no estimate of its error: 2 analysed torques of at least 4"):
+        rated = result.rating()
+    assert np.isnan(rated.interpolation_error).all()
+    (sentence,) = told_error(np.full((2, 2), np.nan), 3)
+    assert kind_of(sentence) is SPECTRUM_UNKNOWN
+    assert told_error(np.zeros((2, 2)), 3) == []  # no bin between them
+
+
+@pytest.mark.filterwarnings("error")
+def test_solved_torques_of_every_bin_leave_nothing_to_estimate():
+    cases = bins((100.0, 1.0), (200.0, 2.0))
+    assert not under(cases).interpolation_error.any()
 
 
 def test_summary_shows_all_bins_together_and_those_of_the_largest_damage():

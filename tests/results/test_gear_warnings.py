@@ -44,6 +44,36 @@ def test_sound_gears_are_not_warned_of():
         assert sentences(read_scene(SCENES / f"{name}.toml")) == []
 
 
+SHAFT = {
+    "start_mm": -50.0,
+    "torque_at_mm": 50.0,
+    "sections": [{"length_mm": 100.0, "outer_diameter_mm": 30.0}],
+    "bearings": [
+        {"at_mm": -40.0, "radial_stiffness_N_per_um": 400.0, "axial_stiffness_N_per_um": 100.0},
+        {"at_mm": 40.0, "radial_stiffness_N_per_um": 400.0},
+    ],
+}
+LOADS = {"wheel.shaft": {**SHAFT, "loads": [{"at_mm": 10.0, "force_N": [0.0, 900.0, 0.0]}]}}
+BINS = {"load.pinion_torque_Nm": None, "load.case": [{"pinion_torque_Nm": 20.0, "hours": 1.0}] * 2}
+
+
+@pytest.mark.parametrize(
+    ("changes", "count"),
+    [
+        (LOADS, 0),
+        ({"wheel.shaft": SHAFT, "analysis.torques_Nm": (10.0, 20.0)}, 0),
+        (LOADS | {"analysis.torques_Nm": (10.0, 20.0)}, 2),
+        (LOADS | BINS, 0),
+        (LOADS | BINS | {"load.case": [{"pinion_torque_Nm": one, "hours": 1.0} for one in (0.0, 5.0, 10.0, 20.0)]}, 3),
+    ],
+    ids=["one torque", "no loads", "torques", "bins of one torque", "bins"],
+)
+def test_loads_on_shafts_are_warned_of_under_several_torques(changes, count):
+    told = [one for one in sentences(spur(**changes)) if "loads on the shaft" in one]
+    wanted = f"the loads on the shaft of the wheel are the same under all {count} torques"
+    assert told == ([wanted] if count else [])
+
+
 @pytest.mark.thorough
 def test_gears_that_jam_are_warned_of_in_every_output(monkeypatch):
     scene = spur(**NEAR)

@@ -234,6 +234,16 @@ def test_face_load_factor_at_sharp_ends_misses_what_is_estimated_on_any_cells():
     assert line.split()[-1] == f"{100.0 * errors[0]:.2g}"
 
 
+@pytest.mark.parametrize(("width", "bounded"), [(3.6, True), (3.2, False)])
+def test_face_load_factor_of_a_narrow_face_has_no_bound_of_its_error(width, bounded):
+    """Even load on 0.8 and 0.71 modules of teeth with free ends: its K_Hbeta is 1."""
+    faces = {"pinion.face_width_mm": width, "wheel.face_width_mm": width, "load.pinion_torque_Nm": 5.0 * width}
+    cycle = without_crowning(32, **faces, **{"analysis.free_edges": True})
+    assert any(one.startswith("the face is 0.71 modules wide") for one in cycle.warnings) is not bounded
+    error = cycle.key_figures()[0]["face_load_factor_error"]
+    assert error < 0.1 if bounded else math.isinf(error)
+
+
 def test_face_load_factor_away_from_ends_misses_at_most_what_is_estimated():
     """What a crowned pair misses falls faster than in proportion to the cells, and its estimate, too."""
     coarse, fine = crowned(0.0, 32), crowned(0.0, 64)

@@ -31,3 +31,22 @@ def test_pair_that_is_its_own_mirror_image_is_as_stiff_on_both_sides():
 def test_measured_flanks_are_one_side():
     with pytest.raises(InputError, match=r'flank\.form: "measured" is one side of the teeth'):
         read_scene(SCENES / "measured_flank.toml").coast_side()
+
+
+POINTS = {"radius_mm": [4 * [r] for r in (64.0, 66.0, 68.0, 70.0)], "axial_mm": 4 * [[-15.0, -5.0, 5.0, 15.0]]}
+MEASURED = {"form": "measured", "measurement": {**POINTS, "deviation_um": 4 * [4 * [0.0]]}}
+OF_PARTS = {
+    "half b": ("double_helical", {"wheel.half_b": {"flank": MEASURED}}, r"wheel\.half_b\.flank\.form"),
+    "tooth": (
+        "helical",
+        {"pinion.tooth": [{"number": 2, "modifications": {}}, {"number": 3, "flank": MEASURED}]},
+        r"pinion\.tooth\[1\]\.flank\.form",
+    ),
+}
+
+
+@pytest.mark.parametrize(("name", "changes", "key"), OF_PARTS.values(), ids=OF_PARTS)
+def test_measured_flanks_of_half_b_and_of_single_teeth_are_one_side_too(name, changes, key):
+    scene = read_scene(SCENES / f"{name}.toml").with_changes(changes)
+    with pytest.raises(InputError, match=rf'^{key}: "measured" is one side of the teeth; allowed others$'):
+        scene.coast_side()
