@@ -133,13 +133,13 @@ FACE_END_IN_LOAD = Kind(
     "away from the end of the face",
 )
 ARC_IN_LOAD = Kind(
-    "contacts end on the rounding of a face end beside the strip with the largest load, and K_Hbeta is off by up to "
-    "{error:.0%} by its cells: derivatives of K_Hbeta depend on the cells by as much as their own size ({key}; "
-    "{count} of {keys} keys)",
-    "cells tell where a contact ends on a rounding to half a cell, and a key moves this end. Differences of analyses "
-    "over steps that move the end by less than a cell scatter as well",
-    "more `cells` along the contact; use analyses over steps that change K_Hbeta by more than its "
-    "`face_load_factor_error`; use end relief or crowning that takes the load away from the rounding",
+    "contacts end on the rounding of a face end beside the strip with the largest load, and the cells of the maps"
+    " alone tell K_Hbeta to {error:.0%}: derivatives of K_Hbeta depend on the cells by as much as their own size "
+    "({key}; {count} of {keys} keys)",
+    "cells tell where a contact ends on a rounding to half a cell, and a key moves this end. Derivatives are "
+    "those of the cells; K_Hbeta itself is solved on finer columns",
+    "use differences of analyses over steps that change K_Hbeta by more than its `face_load_factor_error`; more "
+    "`cells` along the contact; use end relief or crowning that takes the load away from the rounding",
 )
 SLOPES_BY_GRIDS = Kind(
     "derivatives of the transmission error depend on the grid by up to {size:.2g} um per {unit}, more than 5% of "
