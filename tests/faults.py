@@ -3557,8 +3557,8 @@ FAULTS = (
     Fault(
         "error of K_Hbeta: none away from the ends of the face",
         "results/load_factors.py",
-        "if any(at_end) else IN_PAIRS * _change_in_pairs(pair, load)",
-        "if any(at_end) else math.nan",
+        "return max(by_arcs, IN_PAIRS * _change_in_pairs(pair, load))",
+        "return by_arcs or math.nan",
         "results/test_load_factors.py::test_face_load_factor_away_from_ends_misses_at_most_what_is_estimated",
     ),
     Fault(
