@@ -90,10 +90,10 @@ PARALLEL = 0.1
 """Sine of the angle between two edges below which they are those of both gears at one end."""
 
 
-FINEST, ROWS, COLUMNS = 0.05, 12, 20
+FINEST, ROWS, COLUMNS = 0.05, 12, 48
 """For the load along a contact: columns at the beginning of an arc over its radius, cells across the box, and columns
 over the length of the box away from the arcs."""
-COARSER = 2.0
+COARSER = 1.5
 """Widths of the cells that the load along a contact is compared with, over those cells."""
 COLUMN_GROWTH = 1.4
 """Width of a column over that of its neighbour nearer to the arc: with 1.1 K_Hbeta was the same to 0.1 %."""
