@@ -47,6 +47,10 @@ class PressureMap:
         x, y and the normal out of the pinion, in rows, in the fixed frame.
     force_line : (ny,) array [mm]
         Where across the contact the force of every slice bends the teeth: the centre of its pressure.
+    strip_force : (2, 30) array or None [N]
+        Force in every strip of the common face, ascending along the pinion's lengthwise coordinate, where the contact
+        ends on the arc of a rounded edge, which the cells of the map do not resolve: on columns graded towards the arc,
+        and on coarser ones. None: the cells tell it.
     """
 
     x: Array
@@ -58,6 +62,7 @@ class PressureMap:
     origin: Array
     axes: Array
     force_line: Array
+    strip_force: Array | None = None
 
     @property
     def borders(self) -> tuple[Array, Array]:
@@ -153,7 +158,7 @@ def arrays_of_maps(maps: Maps) -> dict[str, Array]:
         else:
             stack = arrays[f"map_{name}"] = np.full((*shape, *(SIZES[axis] for axis in own)), np.nan)
             for (place, _), part in zip(present, parts, strict=True):
-                stack[place] = part
+                stack[place] = np.nan if part.dtype == object else part  # of strips whose forces the cells tell
     return arrays
 
 
@@ -189,6 +194,8 @@ def maps_from(arrays: Mapping[str, Array]) -> Maps:
             else:
                 values = values[place]
             parts[name] = values
+        if np.isnan(parts["strip_force"]).all():
+            parts["strip_force"] = None
         dx, dy = parts["spacing"].tolist()
         return PressureMap(**{**parts, "spacing": (dx, dy)})
 

@@ -308,9 +308,15 @@ MAP_PARTS: dict[str, Part] = {
     "origin": (("vector",), "mm", "contact point in the fixed frame"),
     "force_line": (("along",), "mm", "place of the force of each slice across the contact, from the contact point"),
     "axes": (("row", "vector"), "1", "directions across, along and normal out of the pinion, in rows"),
+    "strip_force": (
+        ("columns", "strip"),
+        "N",
+        "force in each strip of the common face, on columns graded towards rounded ends and on coarser ones; NaN: as "
+        "the cells tell",
+    ),
 }
 """Parts of a pressure map."""
-SIZES = {"axis": 2, "row": 3, "vector": 3}
+SIZES = {"axis": 2, "row": 3, "vector": 3, "columns": 2, "strip": 30}
 """Lengths of dimensions that are the same in every map."""
 
 MAP_CELLS: dict[str, Part] = {
