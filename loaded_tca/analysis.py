@@ -14,7 +14,13 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.arguments import checked
 from loaded_tca.compliance import RootStress, model_of, require_teeth, root_stress_model, way_out_told
 from loaded_tca.compliance.model import held_bodies, with_enough_teeth
-from loaded_tca.edges.rounded import CellForces, PeakAtEdge, loads_along_contacts, pressures_at_rounded_edges
+from loaded_tca.edges.rounded import (
+    CellForces,
+    PeakAtEdge,
+    arcs_in_cycle,
+    loads_along_contacts,
+    pressures_at_rounded_edges,
+)
 from loaded_tca.effort import expected_effort
 from loaded_tca.errors import give_accuracy_warning, named, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Progress
@@ -137,10 +143,12 @@ def _at_rounded_edges(
     peaks, loads = dict[Place, PeakAtEdge](), dict[Place, tuple[CellForces, CellForces]]()
     for one in cycles:
         gears, numbers = one.standing, one.carried.pairs.tolist()
+        arcs = arcs_in_cycle(gears.pair, one.carried)
+        solved = gears.pair, one.carried, gears.bending
         of_cycle = pressures_at_rounded_edges(
-            gears.pair, one.carried, gears.bending, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
+            *solved, arcs=arcs, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
         )
-        along = loads_along_contacts(gears.pair, one.carried, gears.bending, free_edges=wanted.free_edges)
+        along = loads_along_contacts(*solved, arcs=arcs, free_edges=wanted.free_edges)
         peaks |= {(first + t, n, pairs.index(numbers[k])): peak for (t, n, k), peak in of_cycle.items()}
         loads |= {(first + t, n, pairs.index(numbers[k])): load for (t, n, k), load in along.items()}
         first += len(gears.torques)

@@ -51,7 +51,7 @@ KINDS = {
     DESIGN: ("a design", "read it with loaded_tca.studies.load_design"),
 }
 """What messages call each kind, and how it is read."""
-FORMAT_VERSION = 9
+FORMAT_VERSION = 8
 """Raised whenever the code of one version cannot read the files of another."""
 DIGITS = 64
 DIGEST = b"\0\0\0\x06digest\0\0\0\0\0\x02" + DIGITS.to_bytes(4, "big")

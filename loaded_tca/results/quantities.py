@@ -308,14 +308,17 @@ MAP_PARTS: dict[str, Part] = {
     "origin": (("vector",), "mm", "contact point in the fixed frame"),
     "force_line": (("along",), "mm", "place of the force of each slice across the contact, from the contact point"),
     "axes": (("row", "vector"), "1", "directions across, along and normal out of the pinion, in rows"),
+}
+"""Parts of a pressure map."""
+MAP_LOADS: dict[str, Part] = {
     "strip_force": (
         ("columns", "strip"),
         "N",
-        "force in each strip of the common face, on columns graded towards rounded ends and on coarser ones; NaN: as "
-        "the cells tell",
+        "force in each strip of the common face, on columns graded towards rounded ends and on coarser ones; NaN: that "
+        "of the cells",
     ),
 }
-"""Parts of a pressure map."""
+"""Parts of those pressure maps alone whose contacts end on the arc of a rounded edge."""
 SIZES = {"axis": 2, "row": 3, "vector": 3, "columns": 2, "strip": 30}
 """Lengths of dimensions that are the same in every map."""
 
@@ -336,6 +339,10 @@ IN_FILES: dict[str, Part] = {
     },
 }
 """What a file has beside ``QUANTITIES``: the paths, that of the leading contact before those of the pairs; the maps."""
+IN_SOME_FILES: dict[str, Part] = {
+    f"map_{name}": ((*PAIRS, *own), unit, text) for name, (own, unit, text) in MAP_LOADS.items()
+}
+"""What a file has beside these, if a map has it."""
 
 RACK_QUANTITIES: dict[str, Part] = {
     "rack_travel": (
