@@ -268,7 +268,7 @@ def test_face_load_factor_beside_rounded_ends_is_that_of_fine_cells():
         load_factors(cycle.gear_pair, cycle.path, (by_cells(cycle),), math.nan)[0].item() for cycle in (coarse, fine)
     ]
     error = coarse.key_figures()[0]["face_load_factor_error"]
-    assert abs(coarse.face_load_factor.item() / fine.face_load_factor.item() - 1.0) < error < 0.02
+    assert abs(coarse.face_load_factor.item() / fine.face_load_factor.item() - 1.0) < error < 0.04
     assert_allclose(coarse.face_load_factor, of_cells[1], rtol=0.015)
     assert abs(of_cells[0] / of_cells[1] - 1.0) > 0.05
 
