@@ -54,8 +54,8 @@ cells along spur contacts, against 640 (``validation/loaded/face_ends.py``)."""
 LEFT_BY_COLUMNS = 0.03
 """Relative error of K_Hbeta where contacts end on arcs and their load is that of columns, at the least. On
 default grids it was 0.0056 at the most in 17 analyses of spur pairs, against 1536 cells along alone (the pairs of
-``validation/loaded/face_ends.py`` and ``validation/loaded/rounded_ends.py``), and in 23 of random scenes
-0.0293 in one, a pair with few teeth on rolling bearings, and 0.0101 at the most in all others."""
+``validation/loaded/face_ends.py`` and ``validation/loaded/rounded_ends.py``), and 0.021 at the most
+in 28 of random scenes."""
 END_EDGES = [k for k, edge in enumerate(2 * EDGE_NAMES) if "side" in edge]
 """Numbers of the ends of the face among the edges of both gears."""
 IN_PAIRS = 3.0
