@@ -308,6 +308,17 @@ def test_forces_of_columns_are_those_of_loaded_results(tmp_path):
     assert errors[0] == errors[1]
 
 
+def test_files_have_forces_of_columns_only_where_a_contact_ends_on_an_arc(tmp_path):
+    """A file without them, as earlier versions wrote all, is read: its K_Hbeta is that of the cells."""
+    assert "map_strip_force" in rounded(64).stored().variables
+    sharp = without_crowning(32)
+    assert "map_strip_force" not in sharp.stored().variables
+    sharp.save(tmp_path / "result.nc")
+    again = load_result(tmp_path / "result.nc")
+    assert all(one is None or one.strip_force is None for row in again.maps[0] for one in row)
+    assert again.face_load_factor == sharp.face_load_factor
+
+
 def test_contacts_whose_columns_are_not_solved_keep_the_load_and_the_error_of_their_cells(monkeypatch):
     def unsolved(*_, **__):
         raise ConvergenceError("no", None)
