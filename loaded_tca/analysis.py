@@ -14,7 +14,13 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.arguments import checked
 from loaded_tca.compliance import RootStress, model_of, require_teeth, root_stress_model, way_out_told
 from loaded_tca.compliance.model import held_bodies, with_enough_teeth
-from loaded_tca.edges.rounded import PeakAtEdge, pressures_at_rounded_edges
+from loaded_tca.edges.rounded import (
+    CellForces,
+    PeakAtEdge,
+    arcs_in_cycle,
+    loads_along_contacts,
+    pressures_at_rounded_edges,
+)
 from loaded_tca.effort import expected_effort
 from loaded_tca.errors import give_accuracy_warning, named, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Progress
@@ -92,7 +98,7 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle | Doubl
                 *_root_models(scene, pair), partial(_solved_cycles, scene, pair, grid, progress)
             )
         carried = all_torques(unloaded, cycles)
-        at_edges = _at_rounded_edges(scene, carried.pairs.tolist(), cycles)
+        at_edges, on_columns = _at_rounded_edges(scene, carried.pairs.tolist(), cycles)
         warn_of_accuracy(
             pair,
             grid,
@@ -104,7 +110,7 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle | Doubl
         )
         warn_of_supports(pair, cycles)
         date = datetime.now(UTC).isoformat(timespec="seconds")
-        return mesh_cycle(scene, pair, carried, at_edges, tuple(roots), cycles, warnings=warned, date=date)
+        return mesh_cycle(scene, pair, carried, at_edges, on_columns, tuple(roots), cycles, warnings=warned, date=date)
 
 
 def _solved_cycles(
@@ -126,17 +132,27 @@ def _solved_cycles(
     return unloaded, with_enough_teeth(apart, solved)
 
 
-def _at_rounded_edges(scene: Scene, pairs: list[int], cycles: Sequence[StandingCycle]) -> dict[Place, PeakAtEdge]:
-    """Peaks at rounded edges by the indices of torque, position and tooth pair, whose numbers are in the row."""
-    wanted, first, peaks = scene.analysis, 0, dict[Place, PeakAtEdge]()
+def _at_rounded_edges(
+    scene: Scene, pairs: list[int], cycles: Sequence[StandingCycle]
+) -> tuple[dict[Place, PeakAtEdge], dict[Place, tuple[CellForces, CellForces]]]:
+    """Peaks at rounded edges by the indices of torque, position and tooth pair, whose numbers are in the row.
+
+    And the loads along contacts that end there.
+    """
+    wanted, first = scene.analysis, 0
+    peaks, loads = dict[Place, PeakAtEdge](), dict[Place, tuple[CellForces, CellForces]]()
     for one in cycles:
         gears, numbers = one.standing, one.carried.pairs.tolist()
+        arcs = arcs_in_cycle(gears.pair, one.carried)
+        solved = gears.pair, one.carried, gears.bending
         of_cycle = pressures_at_rounded_edges(
-            gears.pair, one.carried, gears.bending, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
+            *solved, arcs=arcs, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
         )
+        along = loads_along_contacts(*solved, arcs=arcs, free_edges=wanted.free_edges)
         peaks |= {(first + t, n, pairs.index(numbers[k])): peak for (t, n, k), peak in of_cycle.items()}
+        loads |= {(first + t, n, pairs.index(numbers[k])): load for (t, n, k), load in along.items()}
         first += len(gears.torques)
-    return peaks
+    return peaks, loads
 
 
 def grid_of(scene: Scene) -> GridChoice:

@@ -138,13 +138,13 @@ FACE_END_IN_LOAD = Kind(
     "takes the load away from the end of the face",
 )
 ARC_IN_LOAD = Kind(
-    "contacts end on the rounding of a face end beside the strip with the largest load, and K_Hbeta is off by up to "
-    "{error:.0%} by its cells: derivatives of K_Hbeta depend on the cells by as much as their own size ({key}; "
+    "contacts end on the rounding of a face end beside the strip with the largest load, and K_Hbeta of the cells alone "
+    "is off by up to {error:.0%}: derivatives of K_Hbeta depend on the cells by as much as their own size ({key}; "
     "{count} of {keys} keys)",
-    "the cells resolve the end of a contact on a rounding to half a cell only, and a key moves this end. Differences "
-    "of analyses over steps that move the end by less than a cell scatter as well",
-    "more `cells` along the contact; use analyses over steps that change K_Hbeta by more than its "
-    "`face_load_factor_error`; use `end_relief_um` or `lead_crowning_um` that takes the load away from the rounding",
+    "the cells resolve the end of a contact on a rounding to half a cell only, and a key moves this end. Derivatives "
+    "are those of the cells; K_Hbeta itself is that of finer columns",
+    "use differences of analyses over steps that change K_Hbeta by more than its `face_load_factor_error`; more "
+    "`cells` along the contact; use `end_relief_um` or `lead_crowning_um` that takes the load away from the rounding",
 )
 SLOPES_BY_GRIDS = Kind(
     "derivatives of the transmission error depend on the grid by up to {size:.2g} um per {unit}, more than 5% of "

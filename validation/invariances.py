@@ -273,7 +273,7 @@ def state_alone(scene: Scene, angle: float, torque: float) -> tuple[State, float
         bending = model_of(scene, pair, pitches_within_reach(pair))
         cycles = GearsUnderTorques(pair, bending, mesh.pinion_angle, grid_of(scene)).mesh_cycles([torque])
         carried = all_torques(mesh, cycles)
-        state = _state(mesh_cycle(scene, pair, carried, {}, (), cycles), 0, 0)
+        state = _state(mesh_cycle(scene, pair, carried, {}, {}, (), cycles), 0, 0)
     loaded = [one for one in carried.contacts[0][0] if one is not None]
     moment = sum(one.solution.load * one.contact.wheel_lever for one in loaded)
     return state, float(mesh.transmission_error[0]), moment

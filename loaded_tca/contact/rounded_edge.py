@@ -414,10 +414,10 @@ class _Contact:
         heights, tilted = numbers("gap", self.gap(x, y)), self.wedges.free
         if self.slice_compliance is not None:
             slices = numbers("slice_compliance", self.slice_compliance(*place))
-            slices = _of_material(slices, np.asarray(np.isfinite(heights).any(axis=1 - self.slice_axis)))
+            slices = of_material(slices, np.asarray(np.isfinite(heights).any(axis=1 - self.slice_axis)))
         free = [*self.free_edges, *tilted]
         problem = GradedProblem(heights, dx, borders, *self.demand, slices, self.slice_axis, free)
-        start = None if before is None else _carried(before, self.low[0], x, y)
+        start = None if before is None else interpolated_pressure(before, self.low[0], x, y)
         if tilted:
             expected = guess(problem) if start is None else start
             problem = replace(problem, reference=self.wedges.reference(_load_centre(problem, expected)))
@@ -432,7 +432,7 @@ class _Contact:
         return max(fewest[0], rows), column_borders(self.low[1], self.high[1], zones, widest)
 
 
-def _of_material(slices: Array, there: Mask) -> Array:
+def of_material(slices: Array, there: Mask) -> Array:
     """Compliance of slices (n, n), zero for those without material (n,).
 
     Those carry nothing. But a law for slices of a tooth, continued beyond its free end, can make K indefinite, and the
@@ -470,7 +470,7 @@ def _load_centre(problem: GradedProblem, pressure: Array) -> float:
     return float(forces @ problem.middles / forces.sum())
 
 
-def _carried(solution: GradedSolution, low: float, x: Array, y: Array) -> Array:
+def interpolated_pressure(solution: GradedSolution, low: float, x: Array, y: Array) -> Array:
     """Pressure at other places (nx, ny): the root of its square, interpolated along both axes."""
     problem = solution.problem
     rows = low + problem.spacing * (np.arange(problem.cells[0]) + 0.5)

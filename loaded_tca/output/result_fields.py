@@ -10,6 +10,7 @@ from loaded_tca.rating.quantities import SPECTRUM_NUMBERS
 from loaded_tca.results.declared import PAIRS, Number
 from loaded_tca.results.quantities import (
     CYCLE_NUMBERS,
+    MAP_LOADS,
     MAP_PARTS,
     OF_SUPPORTS,
     PATH_PARTS,
@@ -43,7 +44,7 @@ def describe_results() -> str:
         "Supports, where the scene has them": _numbers(OF_SUPPORTS),
         "Root stress, where the scene asks for it": _numbers(ROOT_STRESS),
         "`result.path` and `result.paths[pair]`: the unloaded contact": _parts(PATH_PARTS),
-        "`result.maps[torque][position][pair]`: one pressure map": _parts(MAP_PARTS),
+        "`result.maps[torque][position][pair]`: one pressure map": _parts(MAP_PARTS | MAP_LOADS),
         "Whole revolutions; on supports those of above, too": _numbers(of_turns),
         "Planetary stages": _numbers(StageResult.NUMBERS),
         "Double helical pairs; axial directions are those of half a": _numbers(DoubleHelicalResult.NUMBERS),

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loaded_tca.edges.rounded import NOT_REACHED, PeakAtEdge
+from loaded_tca.edges.rounded import NOT_REACHED, CellForces, PeakAtEdge
 from loaded_tca.loaded.loaded_contact import EQUAL, LoadedContact
 from loaded_tca.reference.hertz import line_contact
-from loaded_tca.results.load_factors import load_factors
+from loaded_tca.results.load_factors import forces_of_columns, load_factors, strip_borders
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap, place_on_material, sharp_edge_cell
 from loaded_tca.results.root_stress import root_stress_arrays
@@ -40,6 +40,7 @@ def mesh_cycle(
     pair: GearPair,
     carried: CycleSolution,
     at_rounded_edges: Mapping[tuple[int, int, int], PeakAtEdge],
+    on_columns: Mapping[tuple[int, int, int], Sequence[CellForces]],
     roots: Sequence[RootStress],
     cycles: Sequence[StandingCycle],
     *,
@@ -56,6 +57,8 @@ def mesh_cycle(
     carried : CycleSolution
     at_rounded_edges : mapping
         Peaks there by the indices of torque, position and tooth pair, as ``carried`` has them.
+    on_columns : mapping
+        Loads along contacts on columns and on coarser ones, likewise; of contacts whose cells do not resolve them.
     roots : sequence of RootStress
         Of pinion and wheel, where the scene asks for root stress.
     cycles : sequence of StandingCycle
@@ -74,6 +77,10 @@ def mesh_cycle(
     apart = np.isnan(numbers["contact_deformation"])
     numbers["normal_force"] = np.where(apart & ~np.isnan(share), 0.0, numbers["normal_force"])
     path, (torques, positions, pairs) = carried.path, (range(length) for length in share.shape)
+    borders = strip_borders(pair, path)
+    for t, n, k in maps:
+        if (one := maps[t, n, k]) is not None and (loads := on_columns.get((t, n, int(order[k])))) is not None:
+            maps[t, n, k] = replace(one, strip_force=forces_of_columns(pair, loads, borders))
     stacked = tuple(tuple(tuple(maps[t, n, k] for k in pairs) for n in positions) for t in torques)
     face_load_factor, transverse_load_factor = load_factors(pair, path, stacked, scene.mean_contact_length)
     arrays = {

@@ -1,5 +1,7 @@
 """Derivatives of K_Hbeta by the forces of the cells, the motions of the grids and of the common face.
 
+They are those of the forces in strips that cells have, also where the forces of a result are those of columns.
+
 Where derivatives hold less than elsewhere: marks of contacts, sizes of kinks, and the warnings of both.
 
 Each has a size: of marks how many of the derivatives of random scenes are off there, by how much
@@ -187,7 +189,7 @@ def _of_maps(
     derivative: Callable[[PressureMap, Array, Array], Array],
 ) -> list[list[Array | None]]:
     """A derivative of K_Hbeta by every map, of the map, the borders of the strips and their forces; None without."""
-    borders, forces = face_forces(pair, path, positions)
+    borders, forces = face_forces(pair, path, positions, by_cells=True)
     by_map: list[list[Array | None]] = [[None] * len(row) for row in positions]
     for n, row in enumerate(positions[:-1] if forces.any() else ()):
         by_map[n] = [None if one is None else derivative(one, borders, forces) for one in row]
@@ -215,7 +217,7 @@ def rival_strip(
     (int, float) or None
         The largest such strip; None if there is none.
     """
-    _, forces = face_forces(pair, path, positions)
+    _, forces = face_forces(pair, path, positions, by_cells=True)
     largest = int(forces.argmax())
     ends = np.concatenate([[-np.inf], forces, [-np.inf]])
     lacking = 1.0 - forces / (forces[largest] or 1.0)
@@ -236,7 +238,7 @@ def top_strips(result: CycleNumbers) -> list[tuple[list[int], Array]]:
     count = len(result.torque)
     largest, weights = np.ones(count, dtype=int), np.tile([[0.0], [1.0], [0.0]], count)
     for torque, rows in enumerate(result.maps):
-        forces = face_forces(result.gear_pair, result.path, rows)[1]
+        forces = face_forces(result.gear_pair, result.path, rows, by_cells=True)[1]
         top = int(forces.argmax())
         if 0 < top < STRIPS - 1:
             weights[:, torque] = top_weights(forces[top - 1 : top + 2])
@@ -357,7 +359,7 @@ def warn_of_end_strips(result: CycleNumbers, keys: Sequence[str], motions: Array
     """
     moved = np.where(kinks == 0.0, motions, 0.0) != 0.0
     strips = [
-        int(face_forces(result.gear_pair, result.path, rows)[1].argmax())
+        int(face_forces(result.gear_pair, result.path, rows, by_cells=True)[1].argmax())
         for rows, known in zip(result.maps, np.isfinite(result.face_load_factor).tolist(), strict=True)
         if known
     ]

@@ -23,7 +23,7 @@ from loaded_tca.results.files import Buffer, variables_of
 from loaded_tca.results.key_figures import UnderTorque
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import arrays_of_maps, maps_from
-from loaded_tca.results.quantities import IN_FILES, MOTIONS, PATH_PARTS, SIZES
+from loaded_tca.results.quantities import IN_FILES, IN_SOME_FILES, MOTIONS, PATH_PARTS, SIZES
 from loaded_tca.results.result import AnalysisResult
 from loaded_tca.results.root_stress import RootStressMap, root_stress_maps
 from loaded_tca.results.summary import limits_of, summary_text
@@ -78,6 +78,7 @@ class MeshCycle(CycleNumbers, AnalysisResult):
     TITLE: ClassVar = "Loaded tooth contact"
     FIGURES: ClassVar = FIGURES
     BESIDE: ClassVar = IN_FILES
+    BESIDE_SOME: ClassVar = IN_SOME_FILES
 
     def __repr__(self) -> str:
         peak = np.nanmax(self.peak_pressure, initial=0.0)
@@ -379,7 +380,9 @@ class MeshCycle(CycleNumbers, AnalysisResult):
         """The dataset with paths and maps, as files have them."""
         paths = (self.path, *self.paths)
         arrays = {f"path_{name}": np.stack([getattr(path, name) for path in paths]) for name in PATH_PARTS}
-        return self.dataset.assign(variables_of(IN_FILES, arrays | arrays_of_maps(self.maps)))
+        arrays |= arrays_of_maps(self.maps)
+        of_maps = {name: part for name, part in IN_SOME_FILES.items() if name in arrays}
+        return self.dataset.assign(variables_of(IN_FILES | of_maps, arrays))
 
     @classmethod
     def problem_of(cls, file: xarray.Dataset) -> str:

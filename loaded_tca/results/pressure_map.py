@@ -14,7 +14,7 @@ import numpy as np
 
 from loaded_tca.edges.places import dilated, edge_distances
 from loaded_tca.errors import InputError
-from loaded_tca.results.quantities import LAID_END_TO_END, MAP_CELLS, MAP_PARTS, SIZES
+from loaded_tca.results.quantities import LAID_END_TO_END, MAP_CELLS, MAP_LOADS, MAP_PARTS, SIZES
 from loaded_tca.separation.arcs import arcs_beside
 from loaded_tca.separation.flank_places import FlankPlaces
 
@@ -47,6 +47,10 @@ class PressureMap:
         x, y and the normal out of the pinion, in rows, in the fixed frame.
     force_line : (ny,) array [mm]
         Where across the contact the force of every slice bends the teeth: the centre of its pressure.
+    strip_force : (2, 30) array or None [N]
+        Force in every strip of the common face, ascending along the pinion's lengthwise coordinate, where the contact
+        ends on the arc of a rounded edge, which the cells of the map do not resolve: on columns graded towards the arc,
+        and on coarser ones. None: it is that of the cells.
     """
 
     x: Array
@@ -58,6 +62,7 @@ class PressureMap:
     origin: Array
     axes: Array
     force_line: Array
+    strip_force: Array | None = None
 
     @property
     def borders(self) -> tuple[Array, Array]:
@@ -139,7 +144,7 @@ Maps = tuple[tuple[tuple[PressureMap | None, ...], ...], ...]
 
 
 def arrays_of_maps(maps: Maps) -> dict[str, Array]:
-    """Arrays of ``IN_FILES`` that hold all maps: grids end to end, the rest by torque, position and pair."""
+    """Arrays of files that hold all maps: grids end to end, the rest by torque, position and pair."""
     shape = len(maps), len(maps[0]), len(maps[0][0])
     present = [((t, n, k), one) for t, n, k in np.ndindex(shape) if (one := maps[t][n][k]) is not None]
     arrays = {name: np.zeros(shape, dtype=int) for name in MAP_CELLS}
@@ -154,6 +159,12 @@ def arrays_of_maps(maps: Maps) -> dict[str, Array]:
             stack = arrays[f"map_{name}"] = np.full((*shape, *(SIZES[axis] for axis in own)), np.nan)
             for (place, _), part in zip(present, parts, strict=True):
                 stack[place] = part
+    for name, (own, _, _) in MAP_LOADS.items():
+        loads = {place: load for place, one in present if (load := getattr(one, name)) is not None}
+        if loads:
+            stack = arrays[f"map_{name}"] = np.full((*shape, *(SIZES[axis] for axis in own)), np.nan)
+            for place, load in loads.items():
+                stack[place] = load
     return arrays
 
 
@@ -189,6 +200,9 @@ def maps_from(arrays: Mapping[str, Array]) -> Maps:
             else:
                 values = values[place]
             parts[name] = values
+        for name in MAP_LOADS.keys() & {key.removeprefix("map_") for key in arrays}:
+            if np.isfinite(load := arrays[f"map_{name}"][place]).all():
+                parts[name] = load
         dx, dy = parts["spacing"].tolist()
         return PressureMap(**{**parts, "spacing": (dx, dy)})
 

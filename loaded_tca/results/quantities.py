@@ -310,7 +310,16 @@ MAP_PARTS: dict[str, Part] = {
     "axes": (("row", "vector"), "1", "directions across, along and normal out of the pinion, in rows"),
 }
 """Parts of a pressure map."""
-SIZES = {"axis": 2, "row": 3, "vector": 3}
+MAP_LOADS: dict[str, Part] = {
+    "strip_force": (
+        ("columns", "strip"),
+        "N",
+        "force in each strip of the common face, on columns graded towards rounded ends and on coarser ones; NaN: that "
+        "of the cells",
+    ),
+}
+"""Parts of those pressure maps alone whose contacts end on the arc of a rounded edge."""
+SIZES = {"axis": 2, "row": 3, "vector": 3, "columns": 2, "strip": 30}
 """Lengths of dimensions that are the same in every map."""
 
 MAP_CELLS: dict[str, Part] = {
@@ -330,6 +339,10 @@ IN_FILES: dict[str, Part] = {
     },
 }
 """What a file has beside ``QUANTITIES``: the paths, that of the leading contact before those of the pairs; the maps."""
+IN_SOME_FILES: dict[str, Part] = {
+    f"map_{name}": ((*PAIRS, *own), unit, text) for name, (own, unit, text) in MAP_LOADS.items()
+}
+"""What a file has beside these, if a map has it."""
 
 RACK_QUANTITIES: dict[str, Part] = {
     "rack_travel": (

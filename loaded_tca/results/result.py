@@ -281,11 +281,14 @@ class AnalysisResult(Result):
     ----------
     BESIDE : mapping
         Dimensions, unit and long name of arrays that files have beside the dataset.
+    BESIDE_SOME : mapping
+        The same of arrays that only some files have.
     ABOUT : tuple of str
         Attributes of the dataset that files keep.
     """
 
     BESIDE: ClassVar[Mapping[str, Part]] = {}
+    BESIDE_SOME: ClassVar[Mapping[str, Part]] = {}
     ABOUT: ClassVar[tuple[str, ...]] = ABOUT
 
     @classmethod
@@ -308,12 +311,14 @@ class AnalysisResult(Result):
                 for name, number in cls.NUMBERS.items()
                 if number.asked is None or number.asked.by(subject, name.partition("_")[0]) or name in file.variables
             }
-            arrays = arrays_of(file, {**there, **cls.BESIDE})
+            some = {name: part for name, part in cls.BESIDE_SOME.items() if name in file.variables}
+            stored = {**there, **cls.BESIDE, **some}
+            arrays = arrays_of(file, stored)
             parts = cls.parts_of(subject, file, arrays)
         except InputError as error:
             raise InputError([f"{path}: not {cls.WHAT}", *error.problems]) from None
         about = {name: str(file.attrs[name]) for name in cls.ABOUT if name in file.attrs}
-        added = {name: file.variables[name] for name in file.data_vars if name not in {**there, **cls.BESIDE}}
+        added = {name: file.variables[name] for name in file.data_vars if name not in stored}
         dataset = cls.dataset_of(arrays, **about).assign(added)
         whole = {cls.SUBJECT: subject, "dataset": dataset, **parts, **cls.parts_beside(Path(path), subject, dataset)}
         return cls(**whole)

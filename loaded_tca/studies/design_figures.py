@@ -61,7 +61,7 @@ def edge_pressure(_: Roots, held: HeldContacts, positions: Positions) -> tuple[f
 
 
 def face_load_factor(_: Roots, held: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
-    """K_Hbeta and its derivatives, the strip with the largest force held."""
+    """K_Hbeta of the cells, on rounded face ends, too, and its derivatives, the strip with the largest force held."""
     maps = [tuple(_map_of(grid) for grid in position) for position in positions]
     path, closed = held.mesh.leading_contact, (*maps, ())  # of load factors the last position does not count
     factor = float(load_factors(held.pair, path, (closed,), math.nan)[0][0])

@@ -20,7 +20,7 @@ from loaded_tca.edges.rounded import (
     pressure_at_rounded_edge,
     reached_arcs,
 )
-from loaded_tca.errors import AccuracyWarning, noted_accuracy_warnings
+from loaded_tca.errors import AccuracyWarning, ConvergenceError, noted_accuracy_warnings
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.rounding import EdgeRounding
 from loaded_tca.loaded.load_sharing import share_load
@@ -355,3 +355,36 @@ def test_edge_pressure_that_does_not_converge_is_missing_and_the_mesh_cycle_stan
     assert np.isnan(result.edge_pressure_error).all()
     assert_allclose(result.load_share.sum(axis=-1), 1.0, rtol=1e-12)  # the only pair
     assert result.peak_pressure.max() > 0.0
+
+
+def along(**pair):
+    """A misaligned pair whose contact ends on rounded face ends, those ends, and the contact in axes along them."""
+    both, one = loaded(mounting=Mounting(0.0, math.radians(0.02)), **pair)
+    arcs = [edge for edge in reached_arcs(both, one) if edge.crosses_contact]
+    return one, arcs, _ContactAlongEdge(both, one, arcs[0].lines[0], None, 0, False)
+
+
+def test_loads_on_columns_do_not_depend_on_the_box_that_holds_the_contact(monkeypatch):
+    """A box of half a cell beyond the pressure cuts the contact, which is wider beside an arc: it is made larger."""
+    one, arcs, contact = along()
+    usual = contact.cell_forces(arcs)
+    boxes, made = [], contact._box
+    monkeypatch.setattr(contact, "_box", lambda margin: boxes.append(margin) or made(margin))
+    monkeypatch.setattr(rounded, "MARGIN", 0.5)
+    monkeypatch.setattr(rounded, "SPREAD", 0.0)
+    widened = contact.cell_forces(arcs)
+    assert len(boxes) > 1
+    for own, other in zip(usual, widened, strict=True):
+        ends = [load.ends[..., 2] for load in (own, other)]
+        assert_allclose([own.forces.sum(), other.forces.sum()], one.solution.load, rtol=1e-3)  # 10 tolerances
+        moments = [load.forces @ place.mean(axis=0) for load, place in zip((own, other), ends, strict=True)]
+        assert abs(moments[1] - moments[0]) < 2e-3 * one.solution.load * 20.0  # of the face: cells of both boxes differ
+
+
+def test_contacts_that_no_box_holds_have_no_load_on_columns(monkeypatch):
+    _, arcs, contact = along()
+    monkeypatch.setattr(rounded, "MARGIN", 0.5)
+    monkeypatch.setattr(rounded, "SPREAD", 0.0)
+    monkeypatch.setattr(rounded, "MOST_BOXES", 1)
+    with pytest.raises(ConvergenceError, match="reaches the ends of its columns"):
+        contact.cell_forces(arcs)

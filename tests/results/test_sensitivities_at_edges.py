@@ -255,7 +255,7 @@ def test_derivatives_of_one_strip_are_told_beside_those_through_three(monkeypatc
     strips = np.arange(-1.0, 2.0)
     forces = np.full(STRIPS, 0.5)
     forces[9:12] = 1.0 - (strips - 0.3) ** 2 / 50.0
-    monkeypatch.setattr("loaded_tca.results.face_slopes.face_forces", lambda *_: (None, forces))
+    monkeypatch.setattr("loaded_tca.results.face_slopes.face_forces", lambda *_, **__: (None, forces))
     result = SimpleNamespace(torque=np.ones(1), maps=[None], gear_pair=None, path=None)
     rows = top_strips(result)
     assert [strip for strip, _ in rows] == [[9], [10], [11]]
@@ -276,7 +276,7 @@ def test_a_strip_counts_as_a_rival_where_it_carries_as_much(place, force, rival,
     """Within 1 % if it is a maximum of its own, but for 0.05 % where it lies beside the largest one."""
     forces = 0.5 * np.exp(-np.abs(np.arange(STRIPS) - 5.0))
     forces[[5, place]] = 1.0, force
-    monkeypatch.setattr("loaded_tca.results.face_slopes.face_forces", lambda *_: (None, forces))
+    monkeypatch.setattr("loaded_tca.results.face_slopes.face_forces", lambda *_, **__: (None, forces))
     found = rival_strip(None, None, None)
     assert (found and found[0]) == rival
     assert rival is None or found[1] == pytest.approx(1.0 - force)
