@@ -137,7 +137,7 @@ def test_kinks_of_peak_pressures_are_told_where_a_usual_change_sees_them(lacking
     pressures = np.array([[[1000.0, math.nan]]])
     both = (np.array([[[[value], [math.nan]]]]) for value in (slope, other))
     with noted_accuracy_warnings(given=False) as sentences:
-        warn_of_alike_peaks([CROWNING], pressures, np.array([[[lacking, math.nan]]]), *both, stacklevel=1)
+        warn_of_alike_peaks([CROWNING], pressures, np.array([[[lacking, math.nan]]]), *both)
     assert kinds_of(sentences) == [kinds.PEAKS_ALIKE] * count
 
 
@@ -145,7 +145,7 @@ def test_kinks_of_peak_pressures_are_told_where_a_usual_change_sees_them(lacking
 def test_shares_by_grids_are_told_beside_the_largest_derivative(slope, by_grids, count):
     shares, slopes = np.array([[[0.4, 0.6]]]), np.array([[[[-slope], [slope]]]])
     with noted_accuracy_warnings(given=False) as sentences:
-        warn_of_share_grids([IN_PLANE], shares, slopes, np.full(slopes.shape, by_grids), stacklevel=1)
+        warn_of_share_grids([IN_PLANE], shares, slopes, np.full(slopes.shape, by_grids))
     assert kinds_of(sentences) == [kinds.SHARES_BY_GRIDS] * count
 
 
