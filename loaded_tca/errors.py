@@ -1,5 +1,6 @@
 """Every error and warning of the package, in one place."""
 
+import functools
 import os
 import sys
 import warnings
@@ -138,11 +139,17 @@ PACKAGE = os.path.dirname(__file__) + os.sep
 
 
 def _level_of_caller() -> int:
-    """Level of the stack, for who asks, of the line that called the package, whatever lies between."""
+    """Level of the stack, for who asks, of the line that called the package, whatever lies between.
+
+    Properties that are kept are called by ``functools``, which the line that reads them has called.
+    """
     frame: FrameType | None = sys._getframe(1)
     level = last = 1
+    inside = True
     while frame is not None:
-        last = level if frame.f_code.co_filename.startswith(PACKAGE) else last
+        name = frame.f_code.co_filename
+        inside = name.startswith(PACKAGE) or (inside and name == functools.__file__)
+        last = level if inside else last
         frame, level = frame.f_back, level + 1
     return last + 1
 

@@ -7,6 +7,7 @@ import importlib
 import inspect
 import pkgutil
 from fractions import Fraction
+from functools import cached_property
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from loaded_tca import AccuracyWarning, InputError, analyse, load_result, parse_
 from loaded_tca.arguments import checked, kind_of, units_of
 from loaded_tca.arrays import numbers, real
 from loaded_tca.contact import ContactProblem, subsurface_stress
+from loaded_tca.errors import PACKAGE, give_accuracy_warning
 from loaded_tca.flanks import MeasuredDeviations, MeasuredPoints
 from loaded_tca.reference import friction, hertz, iso6336, iso6336_22, weber_banaschek
 from loaded_tca.supports import ShaftLoad
@@ -326,3 +328,15 @@ def test_warning_is_that_of_the_line_that_calls():
     with pytest.warns(AccuracyWarning) as given:
         solve_contact(GAP, SPACING, 115e3, load=1.0)
     assert {warning.filename for warning in given} == {__file__}
+
+
+def test_warning_of_a_kept_property_is_that_of_the_line_that_reads_it():
+    names = {"give": give_accuracy_warning}
+    exec(compile("def coarse(self): give('the fit is coarse')", f"{PACKAGE}fit.py", "exec"), names)
+
+    class Fit:
+        error = cached_property(names["coarse"])
+
+    with pytest.warns(AccuracyWarning, match="coarse") as given:
+        assert Fit().error is None
+    assert [warning.filename for warning in given] == [__file__]
