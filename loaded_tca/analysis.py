@@ -14,13 +14,8 @@ import loaded_tca.warning_kinds as kinds
 from loaded_tca.arguments import checked
 from loaded_tca.compliance import RootStress, model_of, require_teeth, root_stress_model, way_out_told
 from loaded_tca.compliance.model import held_bodies, with_enough_teeth
-from loaded_tca.edges.rounded import (
-    CellForces,
-    PeakAtEdge,
-    arcs_in_cycle,
-    loads_along_contacts,
-    pressures_at_rounded_edges,
-)
+from loaded_tca.edges.arcs import arcs_in_cycle
+from loaded_tca.edges.rounded import CellForces, PeakAtEdge, loads_along_contacts, pressures_at_rounded_edges
 from loaded_tca.effort import expected_effort
 from loaded_tca.errors import give_accuracy_warning, named, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Progress

@@ -402,21 +402,21 @@ FAULTS = (
         for what, file, text, wrong, test in (
             (
                 "a sharp edge that ends one sets no limit aside",
-                "edges/rounded.py",
+                "edges/arcs.py",
                 "return math.inf if self.ends_sharp or self.at_relief_start else self.bound",
                 "return self.bound",
                 "results/test_rounded_edges.py::test_largest_edge_pressure_and_its_warnings_do_not_depend_on_whether_all_are_asked_for",
             ),
             (
                 "a relief start that crosses one sets no limit aside",
-                "edges/rounded.py",
+                "edges/arcs.py",
                 "self.ends_sharp or self.at_relief_start else",
                 "self.ends_sharp else",
                 f"{ROUNDED}::test_edge_that_a_relief_start_crosses_has_no_bound",
             ),
             (
                 "they are looked for in the tangent plane, not on the flanks",
-                "edges/rounded.py",
+                "edges/arcs.py",
                 "place = place - length / (slope @ slope) * slope",
                 "place = place - (length - 0.05) / (slope @ slope) * slope",
                 f"{ROUNDED}::test_edges_of_bent_flanks_are_where_the_gap_begins_to_open",
@@ -532,7 +532,7 @@ FAULTS = (
     ),
     Fault(
         "rounded edges: unlike materials share the compliance evenly",
-        "edges/rounded.py",
+        "edges/arcs.py",
         "pair.contact_modulus / gear.material.plane_strain_modulus,",
         "0.5,",
         f"{ROUNDED}::test_share_of_a_gear_in_the_compliance_is_that_of_its_material",

@@ -13,13 +13,8 @@ from loaded_tca.analysis import analyse
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact import RoundedEdge, edge_pressures, solve_contact
 from loaded_tca.edges import rounded
-from loaded_tca.edges.rounded import (
-    ReachedArc,
-    _ContactAlongEdge,
-    largest_pressure,
-    pressure_at_rounded_edge,
-    reached_arcs,
-)
+from loaded_tca.edges.arcs import ReachedArc, largest_pressure, reached_arcs
+from loaded_tca.edges.rounded import _ContactAlongEdge, pressure_at_rounded_edge
 from loaded_tca.errors import AccuracyWarning, ConvergenceError, noted_accuracy_warnings
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.rounding import EdgeRounding

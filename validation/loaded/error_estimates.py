@@ -23,7 +23,8 @@ import numpy as np
 from loaded_tca import AccuracyWarning
 from loaded_tca.compliance import tooth_compliance
 from loaded_tca.compliance.model import BendingModel
-from loaded_tca.edges.rounded import pressure_at_rounded_edge, reached_arcs
+from loaded_tca.edges.arcs import reached_arcs
+from loaded_tca.edges.rounded import pressure_at_rounded_edge
 from loaded_tca.errors import LoadedTCAError
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load

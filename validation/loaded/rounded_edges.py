@@ -32,7 +32,8 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact import edge_pressures, rounded_edge
 from loaded_tca.edges import rounded as edges_of_gears
-from loaded_tca.edges.rounded import PeakAtEdge, ReachedArc, pressure_at_rounded_edge, reached_arcs
+from loaded_tca.edges.arcs import ReachedArc, arcs_in_cycle, reached_arcs
+from loaded_tca.edges.rounded import PeakAtEdge, pressure_at_rounded_edge
 from loaded_tca.loaded.cycle import CycleSolution
 from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
@@ -153,10 +154,8 @@ class Solved:
         """Contacts that reach rounded edges, by torque, position and tooth pair, the highest bound first."""
         found = {
             (t, n, k): (loaded, edges)
-            for t, positions in enumerate(self.carried.contacts)
-            for n, row in enumerate(positions)
-            for k, loaded in enumerate(row)
-            if loaded is not None and loaded.at_arc and (edges := reached_arcs(self.pair, loaded))
+            for (t, n, k), edges in arcs_in_cycle(self.pair, self.carried).items()
+            if (loaded := self.carried.contacts[t][n][k]) is not None
         }
         return dict(sorted(found.items(), key=lambda item: -item[1][1][0].bound))
 
