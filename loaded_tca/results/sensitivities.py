@@ -216,10 +216,8 @@ class Sensitivities:
 
         ``rates`` (2, grids): growth of the number as one of its grids moves [per mm].
         """
-        motions, first = (
-            self.growth.motions[..., :2],
-            np.searchsorted(self.tangents.state, np.arange(self.places.shape[1])),
-        )
+        first = np.searchsorted(self.tangents.state, np.arange(self.places.shape[1]))
+        motions = self.growth.motions[..., :2]
         left = motions - self.growth.shifts
         on_edge = (self.result.on_edge > 0)[*self._grids]
         of_grids = np.stack([motions, left, np.where(on_edge[:, None], 0.0, left)]) * rates.T

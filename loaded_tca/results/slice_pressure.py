@@ -194,7 +194,7 @@ def largest_slice_pressures(pair: GearPair, contacts: Sequence[UnderPressure]) -
     place and those one slice before and after it, since on even grids two places may be alike. Where the contact is
     shorter than the length of the average, that grows with it.
     """
-    return _slice_peaks(pair, contacts, lambda _, pressure: pressure)
+    return _slice_peaks(pair, contacts, lambda _, __, pressure: pressure)
 
 
 def other_slice_pressures(
@@ -212,8 +212,7 @@ def other_slice_pressures(
         contact's length away, beyond what one top has within a few percent of its pressure.
     """
 
-    def apart(along: Array, pressure: Array) -> Array:
-        slices = [SliceLoads(pair.module, one, cells) for _, one, cells in contacts]
+    def apart(slices: Sequence[SliceLoads], along: Array, pressure: Array) -> Array:
         least = np.array([max(one.length, APART * (one.ends[1] - one.ends[0])) for one in slices])
         padded = np.pad(pressure, ((0, 0), (1, 1)))
         tops = (pressure >= padded[:, :-2]) & (pressure >= padded[:, 2:])
@@ -223,16 +222,16 @@ def other_slice_pressures(
 
 
 def _slice_peaks(
-    pair: GearPair, contacts: Sequence[UnderPressure], wanted: Callable[[Array, Array], Array]
+    pair: GearPair, contacts: Sequence[UnderPressure], wanted: Callable[[Sequence[SliceLoads], Array, Array], Array]
 ) -> list[SlicePeak]:
-    """Peak of the slices of each contact at the largest ``wanted`` of places and pressures (contacts, n) along it."""
+    """Peak of each contact at the largest ``wanted`` of its slices, and of places and pressures (contacts, n) there."""
     slices = [SliceLoads(pair.module, separation, pressure) for _, separation, pressure in contacts]
     axes = np.array([separation.axes for _, separation, _ in contacts])
     gap = NormalGap(pair.sharp, [contact for contact, *_ in contacts], axes)
     count = max(each.places.size for each in slices)
     places = np.stack([np.pad(each.places, (0, count - each.places.size), "edge") for each in slices])
     pressure, bends = _slice_pressures(pair, gap, slices, places)
-    finest, pressure = places, wanted(places, pressure)
+    finest, pressure = places, wanted(slices, places, pressure)
     known = pressure.max(axis=1) > 0.0
     for _ in range(ROUNDS):  # where the curvature jumps the largest pressure is at the jump, between two places
         top = pressure.argmax(axis=1, keepdims=True)

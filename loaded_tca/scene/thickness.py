@@ -13,6 +13,7 @@ from loaded_tca.arrays import GEARS
 from loaded_tca.errors import InputError
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, InternalMesh, RingGear
 from loaded_tca.gears.tooth_measures import (
+    MeasuredGear,
     allowance_of_balls,
     allowance_of_pins,
     allowance_of_span,
@@ -122,16 +123,14 @@ def as_measured(gear: GearType, own: MeasuredSection) -> GearType:
         measured = replace(gear, thickness_allowance=allowance_of_span(gear, own.span_measurement_mm, teeth))
         measured.span_measurement(teeth)  # refuses a span that touches no flank
         return measured
-    if own.ball_measurement_mm is not None and own.ball_diameter_mm is not None:
-        allowance = allowance_of_balls(gear, own.ball_measurement_mm, own.ball_diameter_mm)
-        measured = replace(gear, thickness_allowance=allowance)
-        measured.ball_measurement(own.ball_diameter_mm)
-        return measured
-    if own.pin_measurement_mm is not None and own.pin_diameter_mm is not None:
-        allowance = allowance_of_pins(gear, own.pin_measurement_mm, own.pin_diameter_mm)
-        measured = replace(gear, thickness_allowance=allowance)
-        measured.pin_measurement(own.pin_diameter_mm)
-        return measured
+    for measurement, diameter, allowance_of, measured_over in (
+        (own.ball_measurement_mm, own.ball_diameter_mm, allowance_of_balls, MeasuredGear.ball_measurement),
+        (own.pin_measurement_mm, own.pin_diameter_mm, allowance_of_pins, MeasuredGear.pin_measurement),
+    ):
+        if measurement is not None and diameter is not None:
+            measured = replace(gear, thickness_allowance=allowance_of(gear, measurement, diameter))
+            measured_over(measured, diameter)  # refuses balls and pins that touch no flank
+            return measured
     return gear
 
 
