@@ -404,8 +404,9 @@ def gear_section(
     section |= _tip(reading, component, None if ring else flank)
     if ring:
         section |= _cutter(reading, component, flank)
-        if (root := reading.number(component, "root_diameter", LENGTH)) is not None:
-            section["root_diameter_mm"] = abs(root)
+    by_tool = None if ring else _by_tool(reading, component, flank, module, "dedendum_coefficient")
+    if by_tool is None and (root := reading.number(component, "root_diameter", LENGTH)) is not None:
+        section["root_diameter_mm"] = abs(root)
     elsewhere = {"dedendum_coefficient": "root_diameter_mm", "root_radius_coefficient": "cutter"}
     section |= _own_rack(reading, component, flank, pair, [name for name in RACK if elsewhere[name] not in section])
     if not ring and (bore := reading.number(component, "inner_diameter", LENGTH)):

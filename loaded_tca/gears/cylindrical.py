@@ -78,6 +78,8 @@ class CylindricalGear(MeasuredGear):
         Height of the chamfers of the tip edges, along the radius: the flank ends at :attr:`tip_form_radius`.
     tip_chamfer_angle : float [rad], optional
         Between chamfer and middle of the tooth; None: 45 degrees.
+    root_diameter : float [mm], optional
+        d_f, which sets ``dedendum_coefficient``; None: d - 2 m_n (h_fP/m_n - x_E).
 
     Raises
     ------
@@ -118,14 +120,15 @@ class CylindricalGear(MeasuredGear):
     protuberance_angle: float | None = None
     tip_chamfer: float = 0.0
     tip_chamfer_angle: float | None = None
+    root_diameter: float | None = None
 
     def __post_init__(self) -> None:
-        positive = "normal_module", "face_width", "tip_diameter", "dedendum_coefficient", "addendum_coefficient"
+        lengths = "normal_module", "face_width", "tip_diameter", "root_diameter"
         finite = "profile_shift", "thickness_allowance", "tip_alteration_coefficient"
         rounding = self.root_radius_coefficient
         require(
             *teeth_checks(self.teeth),
-            *input_checks(self, positive, finite),
+            *input_checks(self, (*lengths, "dedendum_coefficient", "addendum_coefficient"), finite),
             bore_check(self.bore_diameter),
             spiral_check("helix_angle", self.helix_angle),
             face_check(self.face_width, self.normal_module, "normal_module"),
@@ -149,13 +152,25 @@ class CylindricalGear(MeasuredGear):
             *chamfer_checks(self),
             owner=self.name,
         )
+        self._place_root()
+        self._check_tooth()
+
+    def _place_root(self) -> None:
+        """Let a root diameter set the dedendum; refuse a root that no rack leaves."""
+        if self.root_diameter is not None:
+            depth = (self.reference_radius - 0.5 * self.root_diameter) / self.normal_module
+            object.__setattr__(self, "dedendum_coefficient", self.generating_profile_shift + depth)
         dedendum, deepest = self.dedendum_coefficient, pi / 4.0 / tan(self.pressure_angle)
         bore, root = self.bore_diameter or 0.0, 2.0 * self.root_radius
+        asked = f"dedendum_coefficient: {plain(dedendum, 6)}"
+        if self.root_diameter is not None:
+            asked = f"root_diameter: {plain(root, 6)} mm asks for dedendum_coefficient = {plain(dedendum, 6)}, which"
         require(
+            (dedendum > 0.0, f"{asked} is not positive: the root would lie above the reference line of the rack"),
             (
                 dedendum < deepest,
-                f"dedendum_coefficient: {plain(dedendum, 6)} is beyond the point of the rack's tooth; at this pressure "
-                f"angle it must be below {deepest:.4f}",
+                f"{asked} is beyond the point of the rack's tooth; at this pressure angle it must be below "
+                f"{deepest:.4f}",
             ),
             (root > 0.0, f"profile_shift: {plain(self.profile_shift, 6)} makes the root diameter {plain(root, 6)} mm"),
             (
@@ -164,7 +179,6 @@ class CylindricalGear(MeasuredGear):
             ),
             owner=self.name,
         )
-        self._check_tooth()
 
     def _check_tooth(self) -> None:
         """Refuse a tooth without flank or without tip."""

@@ -122,6 +122,7 @@ class GearSection(CutSection):
         Rule(("protuberance_um", "grinding_stock_um"), needs_stock),
         Rule(("protuberance_angle_deg", "protuberance_um"), needs_protuberance),
         below("bore_diameter_mm", "tip_diameter_mm"),
+        below("root_diameter_mm", "tip_diameter_mm"),
         below("modifications.tip_relief_start_mm", "tip_diameter_mm"),
         below("modifications.root_relief_start_mm", "tip_diameter_mm"),
     )

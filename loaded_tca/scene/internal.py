@@ -53,15 +53,6 @@ def _above(larger_key: str, smaller_key: str) -> Rule:
     return Rule((larger_key, smaller_key), complain)
 
 
-def _one_root(dedendum: float | None, diameter: float | None) -> str | None:
-    if dedendum is None or diameter is None:
-        return None
-    return (
-        f"found {plain(dedendum, 6)} beside root_diameter_mm = {plain(diameter, 6)}; give one of them: each "
-        "says where the root is"
-    )
-
-
 def _one_fillet(radius: float | str | None, cutter: CutterSection | None) -> str | None:
     if radius is None or cutter is None:
         return None
@@ -94,7 +85,6 @@ class RingSection(CutSection):
 
     rules: ClassVar[tuple[Rule, ...]] = (
         *CutSection.rules,
-        Rule(("dedendum_coefficient", "root_diameter_mm"), _one_root),
         Rule(("root_radius_coefficient", "cutter"), _one_fillet),
         rule(
             ("bore_diameter_mm",),

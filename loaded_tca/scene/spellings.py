@@ -25,7 +25,7 @@ SPELLINGS = {
     "bore_diameter_mm": "di innerdiameter bore",
     "addendum_coefficient": "hap hap1 hap2 hapstar hastar addendum addendumfactor",
     "addendum_factor": "hap khap addendum addendumcoefficient",
-    "dedendum_coefficient": "hfp hfp1 hfp2 hfpstar hfstar dedendum dedendumfactor df df1 df2 rootdiameter wholedepth",
+    "dedendum_coefficient": "hfp hfp1 hfp2 hfpstar hfstar dedendum dedendumfactor wholedepth",
     "dedendum_factor": "hfp khfp dedendum dedendumcoefficient",
     "root_radius_coefficient": "rhofp rofp rhofpstar rhof filletradius rootradius rootradiusfactor",
     "tip_alteration_coefficient": "k kstar tipalteration tipshortening",

@@ -47,6 +47,15 @@ def _tip_once(
     return None
 
 
+def _one_root(dedendum: float | None, diameter: float | None) -> str | None:
+    if dedendum is None or diameter is None:
+        return None
+    return (
+        f"found {plain(dedendum, 6)} beside root_diameter_mm = {plain(diameter, 6)}; give one of them: each "
+        "says where the root is"
+    )
+
+
 def _topped(topping: bool, alteration: float | None) -> str | None:
     if topping and alteration is not None:
         return (
@@ -86,6 +95,9 @@ class CutSection(MeasuredSection):
     dedendum_coefficient: float | None = key(
         DEDENDUM, "dedendum of the basic rack of this gear in modules, h_fP/m_n", None, "that of [pair]"
     )
+    root_diameter_mm: float | None = key(
+        DIAMETER_mm, "root diameter d_f, instead of `dedendum_coefficient`", None, "d - 2 m_n (h_fP - x_E)"
+    )
     root_radius_coefficient: float | str | None = key(
         ROOT_RADIUS,
         'root radius of the basic rack of this gear in modules, rho_fP/m_n; "full": the largest that fits',
@@ -112,6 +124,7 @@ class CutSection(MeasuredSection):
         Rule(("tip_chamfer_angle_deg", "tip_chamfer_mm"), _needs_chamfer),
         Rule(("tip_diameter_mm", "tip_alteration_coefficient", "addendum_coefficient", "topping"), _tip_once),
         Rule(("topping", "tip_alteration_coefficient"), _topped),
+        Rule(("dedendum_coefficient", "root_diameter_mm"), _one_root),
     )
 
 

@@ -332,6 +332,15 @@ def test_hand_of_a_ring_is_that_of_its_planet() -> None:
     assert scene.hands == ("left", "left")
 
 
+def test_root_diameter_of_a_gear_whose_tool_has_no_dedendum_is_taken() -> None:
+    """Where the tool has one, the root follows from this, as before."""
+    root, no_dedendum = {"21.root_diameter": (48.0, "mm")}, {"51.addendum_coefficient_reference_profile": None}
+    assert scene_of(root) == scene_of()
+    imported = import_stage(changed(attributes=root | no_dedendum), "10")
+    assert_allclose(2.0 * imported.scene.mesh().pinion.root_radius, 48.0, rtol=ROUNDING)
+    assert not any("21" in one and "root_diameter" in one for one in imported.not_taken)
+
+
 RING_TOOLS = {
     "that of its cutter": ({"85.addendum_coefficient_reference_profile": (1.4, "none")}, 1.4, []),
     "that of the pinion's tool": (

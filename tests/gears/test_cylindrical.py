@@ -86,6 +86,21 @@ def test_tip_alteration_is_what_the_tip_diameter_lacks():
     assert_allclose(gear(30, profile_shift=0.2, tip_diameter=64.5).tip_alteration, -0.15, rtol=1e-10)
 
 
+def test_root_diameter_stays_where_the_teeth_get_thinner():
+    """d_f = d - 2 m_n (h_fP - x_E) by hand: 60 - 4 (1.3 - 0.05), and x_E = 0.05 - 0.1/(4 tan 20) of thinner teeth."""
+    rooted = gear(30, profile_shift=0.05, root_diameter=55.0)
+    assert_allclose(rooted.dedendum_coefficient, 1.3, rtol=ROUNDING)
+    assert rooted == gear(30, profile_shift=0.05, root_diameter=55.0, dedendum_coefficient=1.1)
+    thinner = replace(rooted, thickness_allowance=-0.1)
+    assert_allclose([thinner.root_radius, thinner.form_radius], [27.5, by_hand(-0.1).form_radius], rtol=ROUNDING)
+    assert_allclose(rooted.form_radius, by_hand(0.0).form_radius, rtol=ROUNDING)
+
+
+def by_hand(allowance):
+    shift = 0.05 + allowance / (4.0 * tan(radians(20.0)))
+    return gear(30, profile_shift=0.05, thickness_allowance=allowance, dedendum_coefficient=1.25 + shift)
+
+
 @given(st.integers(12, 200), st.floats(-0.2, 0.6), st.floats(-0.5, 0.5))
 def test_tooth_thickness_at_reference_and_base_circle(teeth, shift, helix):
     any_gear = gear(teeth, profile_shift=shift, helix_angle=helix)
@@ -251,6 +266,9 @@ test_gear_refuses_an_impossible_value = refusals(
     ({"tip_diameter": inf}, "gear: tip_diameter: inf is not positive and finite"),
     ({"bore_diameter": nan}, "gear: bore_diameter: nan is neither 0"),
     ({"bore_diameter": 55.0}, "gear: bore_diameter: 55 mm is not below the root diameter 55 mm"),
+    ({"root_diameter": -50.0}, "gear: root_diameter: -50.0 is not positive"),
+    ({"root_diameter": 51.0}, "gear: root_diameter: 51 mm asks for dedendum_coefficient = 2.25, which is beyond"),
+    ({"root_diameter": 60.4}, "gear: root_diameter: 60.4 mm asks for dedendum_coefficient = -0.1, which is not pos"),
     ({"dedendum_coefficient": 0.0}, "gear: dedendum_coefficient: 0.0 is not positive"),
     ({"dedendum_coefficient": 2.2}, "gear: dedendum_coefficient: 2.2 is beyond the point of the rack's tooth"),
     ({"root_radius_coefficient": -0.1}, "gear: root_radius_coefficient: -0.1 is negative"),

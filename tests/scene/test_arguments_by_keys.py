@@ -52,6 +52,7 @@ REFUSED = [
     ),
     ("helical", "reduce tip_diameter_mm or profile_shift", {"pinion.tip_diameter_mm": 160.0}),
     ("helical", "centre_distance_mm: 80 mm is not above", {"pair.centre_distance_mm": 80.0}),
+    ("helical", "pinion: root_diameter_mm: 40 mm asks for dedendum_coefficient = ", {"pinion.root_diameter_mm": 40.0}),
     ("mesh_cycle_finite_elements", "wheel: bore_diameter_mm: 102 mm is not between", {"wheel.bore_diameter_mm": 102.0}),
     ("internal", "a tip_diameter_mm above it", {"wheel.tip_diameter_mm": 150.0}),
     ("internal", "root_diameter_mm or profile_shift", {"wheel.root_diameter_mm": 300.0}),

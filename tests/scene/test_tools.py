@@ -43,6 +43,21 @@ def test_tool_of_a_gear_comes_before_that_of_the_pair():
     assert parse_scene(own.to_toml()) == own
 
 
+def test_root_diameter_of_a_drawing_sets_the_dedendum():
+    """The root that a rack with h_fP = 1.4 leaves, d - 2 m_n (1.4 - x), with the thickness by its span or as it is."""
+    deeper = scene(pinion__dedendum_coefficient=1.4)
+    pinion = deeper.mesh().pinion
+    diameter = 2.0 * pinion.reference_radius - 2.0 * pinion.normal_module * (1.4 - pinion.profile_shift)
+    by_root = scene(pinion__root_diameter_mm=diameter)
+    assert_allclose(by_root.mesh().pinion.dedendum_coefficient, 1.4, rtol=ROUNDING)
+    assert_allclose(by_root.mesh().pinion.form_radius, pinion.form_radius, rtol=ROUNDING)
+    assert parse_scene(by_root.to_toml()) == by_root
+    span = pinion.span_measurement(pinion.span_teeth) - 0.05
+    measured = by_root.with_changes({"pinion.span_measurement_mm": span, "pinion.span_teeth": pinion.span_teeth})
+    assert_allclose(2.0 * measured.mesh().pinion.root_radius, diameter, rtol=ROUNDING)
+    assert measured.mesh().pinion.generating_profile_shift < pinion.profile_shift - 0.01
+
+
 def test_tool_of_the_pair_given_for_each_gear_is_the_same_pair():
     """To the bit, with the stiffness of ISO 6336-1, which takes the mean of both racks."""
     each = {f"{gear}__dedendum_coefficient": 1.3 for gear in ("pinion", "wheel")}
@@ -129,7 +144,6 @@ def test_chamfer_ends_flank_and_active_profile():
         ("pair.alfn", "pair.pressure_angle_deg"),
         ("wheel.MdK", "wheel.ball_measurement_mm"),
         ("wheel.MdR", "wheel.pin_measurement_mm"),
-        ("pinion.root_diameter_in", "pinion.dedendum_coefficient"),
         ("pinion.tooth_thickness_in", "pinion.normal_tooth_thickness_in"),
         ("wheel.MOP_in", "wheel.pin_measurement_in"),
         ("wheel.MOP_mm", "wheel.pin_measurement_mm"),
@@ -196,6 +210,14 @@ test_tools_refuse = refused_calls(
     (
         lambda: internal(wheel__root_diameter_mm=195.0, wheel__dedendum_coefficient=1.3),
         "^wheel.dedendum_coefficient: found 1.3 beside root_diameter_mm = 195; give one of them",
+    ),
+    (
+        lambda: scene(pinion__root_diameter_mm=60.0, pinion__dedendum_coefficient=1.3),
+        "^pinion.dedendum_coefficient: found 1.3 beside root_diameter_mm = 60; give one of them",
+    ),
+    (
+        lambda: scene(pinion__root_diameter_mm=80.0, pinion__tip_diameter_mm=79.0),
+        "^pinion.root_diameter_mm: found 80; allowed up to tip_diameter_mm = 79",
     ),
     (
         lambda: internal(wheel__cutter={"teeth": 25}, wheel__root_radius_coefficient=0.3),
