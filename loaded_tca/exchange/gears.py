@@ -115,14 +115,16 @@ def operation_of(gearbox: Gearbox, stage: Stage, torque: float | None) -> Operat
     Raises
     ------
     InputError
-        If the file has no torque from which that of the pinion follows, and none is given.
+        If the file has no torque from which that of the pinion follows, and none is given; if the given one is 0.
     """
+    if torque is not None:
+        require((0.0 < abs(torque) < math.inf, f"torque_Nm: found {torque}; allowed other than 0"))
     reading, data = gearbox.reading, gear_data(gearbox.reading, stage)
     reading.touch(one for one in data if one is not None)
     by_balance = gearbox.tooth_torques.get(stage.id)
     of_file = _stated_torque(reading, stage, data)
     in_file = next((abs(one) for one in (of_file, by_balance) if one), None)
-    magnitude = abs(torque) if torque else in_file
+    magnitude = in_file if torque is None else abs(torque)
     if magnitude is None:
         raise InputError(
             f"stage {stage.id}: torque: missing in the stage, and not to be had from the loads on the shafts; give "

@@ -190,6 +190,12 @@ def test_bores_of_gears_are_their_inner_diameters_or_the_shaft() -> None:
     assert scene.pinion.bore_diameter_mm is None  # 40 of 46 mm: the pinion is cut into its shaft
 
 
+@pytest.mark.parametrize("torque", [0.0, math.nan, math.inf])
+def test_a_torque_of_nothing_is_refused(torque) -> None:
+    with pytest.raises(InputError, match=f"torque_Nm: found {torque}; allowed other than 0"):
+        import_stage(example(), "10", torque_Nm=torque)
+
+
 def test_a_stated_loaded_flank_tells_the_side_without_torque() -> None:
     silent = {"97.torque_around_u_axis": None, "3.rotational_speed": None}
     for flank, sense in (("right", "positive"), ("left", "negative")):
