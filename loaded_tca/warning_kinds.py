@@ -519,6 +519,13 @@ PITCH_DEVIATIONS = Kind(
     "pitch",
     "`loaded-tca revolution`, or `analyse_revolution`",
 )
+INDEX_OF_ONE_SIDE = Kind(
+    "{key}: deviations of the flanks of the drive side are kept on the coast side",
+    "either side of the teeth has index deviations of its own. A tooth that stands elsewhere as a whole is set back on "
+    "one side and stands forward on the other; the same deviation on both sides is that of a thinner tooth",
+    "give the deviations of the other side: `scene.coast_side().with_changes({key: values})`. An analysis of one pitch "
+    "leaves them out, runout holds for both sides",
+)
 OPEN_REVOLUTION = Kind(
     "{pitches} pitches are no whole turn of the {gear}, whose teeth deviate: both ends of the curve do not meet, so "
     "that orders of the gears mix, and deviations hold for this part of the turn only",

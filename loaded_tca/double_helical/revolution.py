@@ -226,13 +226,15 @@ def _arrays(place: Place) -> dict[str, Array]:
 
 
 def _rigid(place: Place) -> Array:
-    """Transmission error of both halves without load (n,) [rad]: where they touch, or one does between held gears."""
+    """Transmission error of both halves without load (n,) [rad]: where both touch, or the first one between held gears.
+
+    A spring along the axis carries nothing without load, and holds.
+    """
     scene, pair = place.scene, gears_of(place.cycles[0])
     length = -pair.driving * pair.base_radii[1]
     ways = [
         length * half.rigid_transmission_error - scene.axial_rate * half.scene.mounting.axial_offset_mm + parted
         for half, parted in zip(place.cycles, scene.parted, strict=True)
     ]
-    floats = scene.geometry.floating != "none"
-    whole: Array = np.mean(ways, axis=0) if floats else np.max(ways, axis=0)
+    whole: Array = np.mean(ways, axis=0) if scene.floats_freely else np.min(ways, axis=0)
     return np.asarray(whole / length)

@@ -37,6 +37,7 @@ from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED, chosen_torque, 
 from loaded_tca.results import MeshCycle, load_result
 from loaded_tca.results.files import FilePath
 from loaded_tca.results.loaded_pattern import loaded_pattern
+from loaded_tca.results.support_growth import gears_under_torque
 from loaded_tca.studies.ranking import varied_keys
 
 if TYPE_CHECKING:
@@ -194,7 +195,7 @@ def _set_legend(figure: Figure, dot: str, on_edge: bool, frame: FlankFrame) -> N
 
 def _draw_loaded_cell(axes: Axes, result: MeshCycle, torque: int, gear: GearName, scale: Normalize) -> None:
     """The flank with the highest pressure that each of its places sees, and the centre of all forces."""
-    pair = result.gear_pair
+    pair = gears_under_torque(result, torque)[0].gear_pair
     flank, to_picture = (pair.pinion if gear == "pinion" else pair.wheel).flank, ToPicture(pair, gear)
     x, y = flank.frame.to_picture(*flank.grid(*FINENESS))
     (outline,) = axes.fill(*_around(x, y), color=NOT_REACHED, zorder=0)

@@ -168,8 +168,10 @@ def _flank(result: MeshCycle, gear: int, block: Block) -> dict[str, Any]:
     flank = (result.gear_pair.pinion.flank, result.gear_pair.wheel.flank)[gear]
     outlines, _ = flank_outlines(flank, (result.scene.active_starts()[gear], result.scene.active_ends()[gear]))
     low, high = limits_of_flank(outlines[0])
-    to_picture = ToPicture(result.gear_pair, GEARS[gear])
-    envelopes = [pressure_seen(result, torque, to_picture, low, high)[1] for torque in range(len(result.torque))]
+    pairs = [gears_under_torque(result, torque)[0].gear_pair for torque in range(len(result.torque))]
+    envelopes = [
+        pressure_seen(result, torque, ToPicture(pair, GEARS[gear]), low, high)[1] for torque, pair in enumerate(pairs)
+    ]
     steps = [scaled(one) for one in envelopes]
     return {
         "name": result.scene.flank_names[gear],

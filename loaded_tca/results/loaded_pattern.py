@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loaded_tca.arrays import Array, GearName
+from loaded_tca.results.support_growth import gears_under_torque
 
 if TYPE_CHECKING:
     from loaded_tca.results.mesh_cycle import MeshCycle
@@ -38,7 +39,7 @@ def loaded_pattern(result: MeshCycle, torque: int, gear: GearName) -> LoadedPatt
     maps = [one for row in result.maps[torque] for one in row if one is not None and one.pressure.any()]
     if not maps:
         return LoadedPattern(np.full(2, math.nan), np.full(2, math.nan), math.nan)
-    pair = result.gear_pair
+    pair = gears_under_torque(result, torque)[0].gear_pair
     frame = getattr(pair, gear).flank.frame
     on_flank = pair.on_pinion if gear == "pinion" else pair.on_wheel
     pressure = [one.pressure > 0.0 for one in maps]

@@ -150,6 +150,13 @@ class GearSection(cylindrical.GearSection):
         return super().teeth_differ or self.apex_runout_um > 0.0 or (of_half_b is not None and of_half_b.is_given)
 
     @property
+    def index_deviations(self) -> tuple[str, ...]:
+        """Keys of the pitch deviations of both halves that are of one side of the teeth, in the section of the gear."""
+        of_half_b = None if self.half_b is None else self.half_b.pitch
+        keys = () if of_half_b is None else of_half_b.given_index
+        return super().index_deviations + tuple(f"half_b.pitch.{key}" for key in keys)
+
+    @property
     def measured_flanks(self) -> tuple[str, ...]:
         """Keys of the flanks of both halves that are measured, in the section of the gear."""
         of_half_b = None if self.half_b is None else self.half_b.flank

@@ -10,8 +10,9 @@ from functools import partial
 from itertools import product
 from typing import Any, ClassVar, Literal
 
+import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS
-from loaded_tca.errors import require
+from loaded_tca.errors import give_accuracy_warning, require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.notebooks import InNotebooks
 from loaded_tca.pairs.gear import Gear
@@ -204,6 +205,11 @@ class Scene(InNotebooks, WithStandards, ABC):
             If a flank is measured, also that of half b or of a single tooth: the scene has no measurement of the other
             side of its teeth.
 
+        Warns
+        -----
+        AccuracyWarning
+            If the teeth have index deviations: those of the drive side are kept.
+
         Examples
         --------
         >>> from loaded_tca import parse_scene
@@ -214,6 +220,8 @@ class Scene(InNotebooks, WithStandards, ABC):
         gears = {"pinion": self.pinion, "wheel": self.wheel}
         measured = [f"{name}.{key}" for name, gear in gears.items() for key in gear.measured_flanks]
         require(*((False, f'{key}: "measured" is one side of the teeth; allowed others') for key in measured))
+        for path in (f"{name}.{own}" for name, gear in gears.items() for own in gear.index_deviations):
+            give_accuracy_warning(kinds.INDEX_OF_ONE_SIDE.sentence(key=path))
         changes: dict[str, Any] = {"pair.driving": "wheel" if self.driving == "pinion" else "pinion"}
         changes["pair.sense"] = self.sense
         if hasattr(self.geometry, "pinion_flank"):

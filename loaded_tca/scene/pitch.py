@@ -116,6 +116,11 @@ class Pitch(Section):
         return self.runout_um > 0.0 or self.tolerance_class is not None or any(self.index_um or self.single_um or ())
 
     @property
+    def given_index(self) -> tuple[str, ...]:
+        """The key that has a deviation of every tooth, if there is one."""
+        return tuple(name for name in COLUMNS if getattr(self, name) is not None)
+
+    @property
     def count(self) -> int | None:
         """How many teeth the deviations are of; None without any."""
         values = self.index_um or self.single_um

@@ -256,6 +256,11 @@ class GearSection(Section):
         return bool(self.tooth) or (self.pitch is not None and self.pitch.is_given)
 
     @property
+    def index_deviations(self) -> tuple[str, ...]:
+        """Keys of the pitch deviations that are of one side of the teeth, in the section of the gear."""
+        return () if self.pitch is None else tuple(f"pitch.{key}" for key in self.pitch.given_index)
+
+    @property
     def measured_flanks(self) -> tuple[str, ...]:
         """Keys of the flanks that are measured, those of single teeth too, in the section of the gear."""
         of_teeth = ((f"tooth[{n}].flank", tooth.flank) for n, tooth in enumerate(self.tooth or ()))

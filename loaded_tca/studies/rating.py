@@ -7,6 +7,7 @@ what is rare. K_v and K_Halpha by method B follow from the tolerances of the cla
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -182,7 +183,8 @@ def shortfall(study: xarray.Dataset, by: Sequence[str] | None = None) -> pandas.
     pandas.DataFrame
         A row for each safety, torque and group: keys of the groups, ``figure``, ``pinion_torque_Nm``, ``samples`` (with
         that figure), ``below``, ``probability``, ``low`` and ``high`` (its bounds, 95 % confidence), ``median`` and
-        ``least`` of the safety, and ``required`` (of the first sample). No rows of a study without safeties.
+        ``least`` of the safety, and ``required`` (of the first sample). The torque is NaN where that of the samples
+        differs. No rows of a study without safeties.
 
     Raises
     ------
@@ -213,20 +215,19 @@ def shortfall(study: xarray.Dataset, by: Sequence[str] | None = None) -> pandas.
             of_group = np.ones(len(required), dtype=bool)
             for key, value in zip(keys, group, strict=True):
                 of_group &= study[key].values == value
-            for torque, moment in enumerate(_torques(study)):
+            for torque, moments in enumerate(study[torque_name(study)].values.T):
                 known = of_group & np.isfinite(values[:, torque])
                 if known.any():
-                    safeties = values[known, torque]
+                    safeties, moment = values[known, torque], _alike(moments[known])
                     count, below = len(safeties), int((safeties < required[known]).sum())
                     numbers = below / count, *_bounds(below, count), np.median(safeties), safeties.min()
                     rows.append((*group, name, moment, count, below, *map(real, numbers), required[known][0]))
     return pandas.DataFrame(rows, columns=columns)
 
 
-def _torques(study: xarray.Dataset) -> list[float]:
-    """Torque of each column of the figures [N m], of the first variant that has it."""
-    torques = study[torque_name(study)].values
-    return [float(next(iter(column[np.isfinite(column)]), np.nan)) for column in torques.T]
+def _alike(torques: Array) -> float:
+    """Torque of samples [N m]; NaN where it differs among them."""
+    return float(torques[0]) if (torques == torques[0]).all() else math.nan
 
 
 def shortfall_text(study: xarray.Dataset) -> Iterator[str]:
@@ -239,9 +240,11 @@ def shortfall_text(study: xarray.Dataset) -> Iterator[str]:
     keys = [*frame.columns[: frame.columns.get_loc("figure")]]
     for _, row in frame.iterrows():
         group = "".join(f", {key} {plain(row[key])}" for key in keys)
+        torque = row[torque_name(study)]
+        under = "the torque of each sample" if math.isnan(torque) else f"{plain(torque)} N m"
         yield (
-            f"{FIGURES[row['figure']]} below the required {plain(row['required'])} under "
-            f"{plain(row[torque_name(study)])} N m{group}: probability {plain(100.0 * row['probability'], 3)} % "
+            f"{FIGURES[row['figure']]} below the required {plain(row['required'])} under {under}{group}: "
+            f"probability {plain(100.0 * row['probability'], 3)} % "
             f"({row['below']} of {row['samples']} samples; {100.0 * row['low']:.1f} to {100.0 * row['high']:.1f} % "
             f"with {plain(100.0 * CONFIDENCE, 6)} % confidence), median {plain(row['median'])}"
         )

@@ -81,6 +81,29 @@ def test_alike_halves_do_not_shuttle_and_are_one_half():
     assert_allclose(revolution.rigid_transmission_error, revolution.half_b.rigid_transmission_error, rtol=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("holding", "left"),
+    [
+        ({"pair.floating": "none"}, 0.0),
+        pytest.param(
+            {"pair.floating": "pinion", "pair.axial_stiffness_N_per_um": 100.0}, 0.0, marks=pytest.mark.thorough
+        ),
+        ({"pair.floating": "pinion"}, 0.5),
+    ],
+    ids=["held", "spring", "free"],
+)
+def test_without_load_the_half_that_touches_first_leads_gears_that_are_held(holding, left):
+    """Half b of the wheel stands back all around: half a drives, and a free gear moves until both touch, half as far."""
+    back = 20.0  # um on the line of action
+    behind = {"wheel.half_b.pitch": {"index_um": TEETH * [back]}, "wheel.pitch": {"index_um": TEETH * [0.0]}}
+    scene = scene_with(**{"revolution.pitches": 1, **behind, **holding})
+    whole, alike = (
+        analyse_double_helical_revolution(one).error_um()
+        for one in (scene, scene.with_changes({"wheel.half_b.pitch.index_um": TEETH * [0.0]}))
+    )
+    assert_allclose(np.abs(whole - alike), left * back, atol=1e-3 * back)  # the flanks are crowned, as they are not
+
+
 def test_command_writes_both_halves_with_orders_of_the_shuttling(wobbling, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr("loaded_tca.double_helical.analyse_double_helical_revolution", lambda *_, **__: wobbling)
     monkeypatch.setattr("loaded_tca.plots.png_of", lambda _: b"")

@@ -2,7 +2,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.analysis import analyse
-from loaded_tca.errors import InputError
+from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.scene import read_scene
 from tests.samples.results import SCENES
 
@@ -50,3 +50,26 @@ def test_measured_flanks_of_half_b_and_of_single_teeth_are_one_side_too(name, ch
     scene = read_scene(SCENES / f"{name}.toml").with_changes(changes)
     with pytest.raises(InputError, match=rf'^{key}: "measured" is one side of the teeth; allowed others$'):
         scene.coast_side()
+
+
+@pytest.mark.parametrize(
+    ("name", "keys"),
+    [
+        ("helical", ["wheel.pitch.single_um"]),
+        ("double_helical", ["pinion.pitch.index_um", "pinion.half_b.pitch.index_um"]),
+    ],
+    ids=["single pitches", "halves"],
+)
+def test_index_deviations_of_one_side_are_warned_of(name, keys):
+    scene = read_scene(SCENES / f"{name}.toml")
+    teeth = {gear: getattr(scene, gear).teeth for gear in ("pinion", "wheel")}
+    deviations = {key: [1.0, -1.0, *(teeth[key.partition(".")[0]] - 2) * [0.0]] for key in keys}
+    with pytest.warns(AccuracyWarning) as given:
+        scene.with_changes(deviations).coast_side()
+    assert [str(one.message).partition(": ")[0] for one in given] == keys
+
+
+def test_runout_and_classes_hold_for_both_sides(recwarn):
+    scene = read_scene(SCENES / "helical.toml")
+    scene.with_changes({"wheel.pitch.runout_um": 5.0, "pinion.pitch.tolerance_class": 5}).coast_side()
+    assert not recwarn.list

@@ -95,6 +95,24 @@ def test_shortfall_of_each_class_stands_in_the_summary():
         shortfall(study, ["pinion.teeth"])
 
 
+TORQUE = "load.pinion_torque_Nm"
+
+
+@pytest.mark.parametrize(
+    ("sampling", "torques", "words"),
+    [
+        ("factor", [200.0, 400.0], ["200 N m, load.pinion_torque_Nm 200", "400 N m, load.pinion_torque_Nm 400"]),
+        ("distribution", [np.nan], ["under the torque of each sample: probability 50 %"]),
+    ],
+)
+def test_shortfall_has_the_torque_of_its_samples(sampling, torques, words):
+    study = rows([1.2, 1.3, 1.0, 1.05], pinion_torque_Nm=[200.0, 200.0, 400.0, 400.0])
+    study = study.assign_coords({TORQUE: ("sample", [200.0, 200.0, 400.0, 400.0], {"sampling": sampling})})
+    assert_allclose(shortfall(study)["pinion_torque_Nm"], torques, rtol=0.0)
+    text = study_summary(study)
+    assert all(word in text for word in words)
+
+
 def test_required_safety_that_varies_counts_of_each_sample():
     study = rows([1.2, 1.2]).assign_coords({"rating.required_flank_safety": ("sample", [1.0, 1.3])})
     assert shortfall(study, []).iloc[0]["below"] == 1
