@@ -4030,28 +4030,28 @@ FAULTS = (
         "double_helical/revolution.py",
         "else np.min(ways, axis=0)",
         "else np.max(ways, axis=0)",
-        "tests/double_helical/test_revolution.py",
+        "double_helical/test_revolution.py::test_without_load_the_half_that_touches_first_leads_gears_that_are_held",
     ),
     Fault(
         "loaded pattern on a wheel that gives way as if the wheel stood at rest",
         "results/loaded_pattern.py",
         "pair = gears_under_torque(result, torque)[0].gear_pair",
         "pair = result.gear_pair",
-        "tests/results/test_loaded_pattern.py",
+        "results/test_loaded_pattern.py::test_pattern_on_a_gear_that_gives_way_is_where_the_gear_stands",
     ),
     Fault(
         "shortfall of all groups under the torque of the first",
         "studies/rating.py",
         "safeties, moment = values[known, torque], _alike(moments[known])",
         "safeties, moment = values[known, torque], _alike(moments[:1])",
-        "tests/studies/test_rating.py",
+        "studies/test_rating.py::test_shortfall_has_the_torque_of_its_samples",
     ),
     Fault(
         "index deviations of one side on the other without a word",
         "scene/model.py",
         "for own in gear.index_deviations",
         "for own in gear.measured_flanks",
-        "tests/scene/test_coast_side.py",
+        "scene/test_coast_side.py::test_index_deviations_of_one_side_are_warned_of",
     ),
 )
 

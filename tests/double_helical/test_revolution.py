@@ -93,7 +93,7 @@ def test_alike_halves_do_not_shuttle_and_are_one_half():
     ids=["held", "spring", "free"],
 )
 def test_without_load_the_half_that_touches_first_leads_gears_that_are_held(holding, left):
-    """Half b of the wheel stands back all around: half a drives, and a free gear moves until both touch, half as far."""
+    """Half b of the wheel stands back all around: half a drives; a free gear moves until both touch, half as far."""
     back = 20.0  # um on the line of action
     behind = {"wheel.half_b.pitch": {"index_um": TEETH * [back]}, "wheel.pitch": {"index_um": TEETH * [0.0]}}
     scene = scene_with(**{"revolution.pitches": 1, **behind, **holding})
