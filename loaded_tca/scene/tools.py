@@ -194,6 +194,8 @@ def shortening(geometry: Geometry, teeth: tuple[int, int], shifts: tuple[float, 
     return {"tip_alteration_coefficient": tip_alteration(geometry, teeth, shifts)}
 
 
+ROUNDING = 1e-9
+"""Relative difference of two lengths that are one: they are solved for to some 1e-12."""
 LONGEST_TIP = 0.1
 """Tip alteration over the module above which a question is asked, of a gear without a profile shift of its own: tip
 diameters are rounded, and have tolerances, of less."""
@@ -212,7 +214,10 @@ def rack_rows(mesh: CylindricalMesh | InternalMesh) -> list[Row]:
     gears: tuple[CylindricalGear, CylindricalGear | RingGear] = mesh.pinion, mesh.wheel
     racks, rows = [_rack(gear) for gear in gears], []
     if any(rack != PROFILE_A for rack in racks):
-        cells = ("/".join(FULL if value == inf else f"{plain(value, 6)}" for value in rack) for rack in racks)
+        cells = (
+            f"{plain(addendum, 6)}/{plain(dedendum, 6)}/{_rounding(gear, radius)}"
+            for gear, (addendum, dedendum, radius) in zip(gears, racks, strict=True)
+        )
         rows.append(("basic rack: h_aP/h_fP/rho_fP [m_n]", *cells))
     tools = [gear if isinstance(gear, CylindricalGear) and gear.grinding_stock else None for gear in gears]
     if any(tools):
@@ -231,6 +236,14 @@ def chamfer_rows(mesh: CylindricalMesh | InternalMesh) -> list[Row]:
         ("tip form diameter d_Fa [mm]", *(fixed(2.0 * gear.tip_form_radius, 4) for gear in gears)),
         ("tip land between chamfers [mm]", *lands),
     ]
+
+
+def _rounding(gear: CylindricalGear | RingGear, asked: float) -> str:
+    """Root radius in modules; where less fits than is asked for, the largest that does."""
+    radius = (gear.fillet_radius if isinstance(gear, RingGear) else gear.rack_tip_radius) / gear.normal_module
+    if asked == inf:
+        return FULL
+    return f"{plain(radius, 4)} ({FULL})" if radius < (1.0 - ROUNDING) * asked else plain(asked, 6)
 
 
 def _protuberance(gear: CylindricalGear) -> str:

@@ -75,6 +75,18 @@ def test_full_root_radius_is_the_largest_that_fits():
     assert internal(wheel__root_radius_coefficient="full").mesh().ring.root_radius_coefficient == float("inf")
 
 
+def test_root_radius_that_does_not_fit_is_shown_as_the_largest_that_does():
+    """(pi/4 - h_fP tan(alpha)) cos(alpha)/(1 - sin(alpha)) of a rack, by hand; of a cutter what the ring has."""
+    asked = scene(pinion__root_radius_coefficient=0.9, wheel__root_radius_coefficient=0.3)
+    rows = {name: cells for name, *cells in asked.geometry_rows()}
+    fits = (pi / 4.0 - 1.25 * tan(ANGLE)) * cos(ANGLE) / (1.0 - sin(ANGLE))
+    assert rows["basic rack: h_aP/h_fP/rho_fP [m_n]"] == [f"1/1.25/{fits:.4f} (full)", "1/1.25/0.3"]
+    ring = internal(wheel__cutter={"teeth": 25, "tip_radius_coefficient": 0.9})
+    (cell,) = (cells[1] for name, *cells in ring.geometry_rows() if name.startswith("basic rack"))
+    assert cell.endswith(" (full)")
+    assert float(cell.split("/")[-1].removesuffix(" (full)")) < 0.9
+
+
 def test_computed_tip_shortening_keeps_the_clearance():
     shifts = {"pinion__profile_shift": 0.4, "wheel__profile_shift": 0.5}
     mesh = scene(pair__tip_shortening="computed", **shifts).mesh()
