@@ -25,7 +25,7 @@ from loaded_tca.double_helical.analyse import (
     settled,
 )
 from loaded_tca.double_helical.laws import gears_of
-from loaded_tca.double_helical.result import FIGURES, NUMBERS, OfHalves
+from loaded_tca.double_helical.result import FIGURES, NUMBERS, PAIR_REVOLUTION_FILE, OfHalves
 from loaded_tca.effort import Effort
 from loaded_tca.errors import require
 from loaded_tca.plain import plain
@@ -107,7 +107,7 @@ class DoubleHelicalRevolution(OverTurns, OfHalves):
     NUMBERS: ClassVar = HALVES_REVOLUTION_NUMBERS
     COORDINATES: ClassVar = ("torque", "pinion_angle")
     FIGURES: ClassVar = HALVES_REVOLUTION_FIGURES
-    FILE: ClassVar = "double_helical_revolution.nc"
+    FILE: ClassVar = PAIR_REVOLUTION_FILE
     JSON: ClassVar = "double_helical_revolution.json"
     TABLES: ClassVar = {"double_helical_revolution.csv": "positions", "double_helical_orders.csv": "orders"}
     PARTS: ClassVar = {"half_a": "half_a_revolution.nc", "half_b": "half_b_revolution.nc"}
