@@ -4025,6 +4025,34 @@ FAULTS = (
         "        pass\n",
         "results/test_load_factors.py::test_face_load_factor_beside_rounded_ends_is_that_of_fine_cells",
     ),
+    Fault(
+        "whole revolution: a report, tables and pictures of an older one stay beside the numbers of a new one",
+        "cli/commands.py",
+        "_written(result, directory, revolution_figures(result), files_beside_revolution())",
+        "_written(result, directory, revolution_figures(result))",
+        "test_cli_revolution.py::test_revolution_is_written_with_its_tables_and_pictures",
+    ),
+    Fault(
+        "dynamics: tables of part of a turn do not say that their curves do not repeat",
+        "results/dynamics.py",
+        'gears=gears) if gears else "")',
+        'gears=gears) if not gears else "")',
+        "test_cli_dynamics.py::test_tables_of_a_revolution_that_does_not_repeat_say_so",
+    ),
+    Fault(
+        "dynamics: the orders of a revolution are those of its pitches instead of the tooth mesh",
+        "results/dynamics.py",
+        "np.arange(highest + 1) / pitches",
+        "np.arange(highest + 1.0)",
+        "test_revolution.py::test_series_for_dynamics_is_the_curve_over_all_pitches",
+    ),
+    Fault(
+        "report: a revolution has the positions of the pitch that its scene asks for",
+        "output/overview.py",
+        "counts = wanted.positions if positions is None else positions,",
+        "counts = wanted.positions,",
+        "reports/test_revolution_report.py::test_report_has_its_sections_and_the_figures_of_the_result",
+    ),
 )
 
 

@@ -32,6 +32,7 @@ from loaded_tca.plain import plain
 from loaded_tca.results.declared import Number
 from loaded_tca.results.figure import Figure
 from loaded_tca.results.files import HALVES_OVER_TURNS
+from loaded_tca.results.result import figures_of
 from loaded_tca.results.revolution import FIGURES as OF_TURNS
 from loaded_tca.results.revolution import OverTurns, Revolution, Spectrum, orders_table
 from loaded_tca.results.tables import Columns
@@ -73,6 +74,7 @@ def _order(kind: str, under: UnderTorque) -> float:
 
 
 HALVES_REVOLUTION_FIGURES: dict[str, Figure] = {
+    **figures_of({"torque": NUMBERS["torque"]}),
     **{name: figure for name, figure in OF_TURNS.items() if "single_flank" in name or name == "first_mesh_order_um"},
     **{name: figure for name, figure in FIGURES.items() if not any(left in name for left in (*_LEFT_OUT, "root"))},
     "axial_motion_span_um": replace(FIGURES["axial_motion_span_um"], label="  over the revolution, peak to peak"),

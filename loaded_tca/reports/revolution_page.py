@@ -27,8 +27,10 @@ if TYPE_CHECKING:
     from loaded_tca.results.revolution import Spectrum
     from loaded_tca.scene import Scene
 
-MOST_ORDERS = 15
-"""Orders of a page, those of the largest amplitudes."""
+MOST_ORDERS = 6
+"""Of a table, those of the largest amplitudes."""
+ORDER_GROUPS = "orders of the tooth mesh", "sidebands of the tooth mesh", "orders of rotation", "other orders"
+"""What a page has a table of each."""
 TEETH_IN_A_ROW = 10
 """Of a table of their deviations."""
 
@@ -92,7 +94,7 @@ def _of_halves(revolution: DoubleHelicalRevolution) -> dict[str, Any]:
 
 
 def order_tables(revolution: OverTurns, spectra: Sequence[Spectrum], rigid: Spectrum | None = None) -> Iterator[Table]:
-    """Tables of the orders with the largest amplitudes under any torque, the largest first; none where all vanish.
+    """Tables of the orders with the largest amplitudes under any torque by their kinds, the largest first.
 
     Parameters
     ----------
@@ -103,26 +105,37 @@ def order_tables(revolution: OverTurns, spectra: Sequence[Spectrum], rigid: Spec
         Without load.
     """
     amplitudes = np.array([spectrum.amplitude for spectrum in spectra])
-    largest = amplitudes.max(axis=0)
-    ranked = [n for n in np.argsort(-largest, kind="stable").tolist() if largest[n] > LEAST_SHOWN][:MOST_ORDERS]
-    order, kind = spectra[0].order, spectra[0].kind.tolist()
-    turns = [order * teeth / revolution.teeth[revolution.counted_by] for teeth in revolution.teeth]
+    largest, kinds = amplitudes.max(axis=0), spectra[0].kind.tolist()
+    ranked = [n for n in np.argsort(-largest, kind="stable").tolist() if largest[n] > LEAST_SHOWN]
+    turns = [spectra[0].order * teeth / revolution.teeth[revolution.counted_by] for teeth in revolution.teeth]
     leaking = revolution.leaking_orders()
-    heads = ["order", "cycles per turn of the pinion", "of the wheel"]
-    heads += [f"leaking order of the {gear}" for gear in leaking] + ["without load [µm]"] * (rigid is not None)
+    heads = ["cycles per pinion turn", "per wheel turn"]
+    heads += [f"leaking {gear} order" for gear in leaking] + ["without load [µm]"] * (rigid is not None)
     unloaded = [] if rigid is None else [rigid.amplitude]
-    for part in parts_of(spectra, MOST_TORQUES) if ranked else ():
-        under = [f"{shown_torque(torque)} [µm]" for torque in revolution.torque[part].tolist()]
-        rows = [
-            (
-                order_in_words(kind[n]),
-                *(plain(of_gear[n]) for of_gear in turns),
-                *(shown(of_gear[n], "order") for of_gear in leaking.values()),
-                *(shown(values[n], "amplitude_um") for values in (*unloaded, *amplitudes[part])),
-            )
-            for n in ranked
-        ]
-        yield Table(tuple(rows), (*heads, *under))
+    for group in ORDER_GROUPS:
+        of_group = [n for n in ranked if _group(kinds[n]) == group][:MOST_ORDERS]
+        for part in parts_of(spectra, MOST_TORQUES) if of_group else ():
+            under = [f"{shown_torque(torque)} [µm]" for torque in revolution.torque[part].tolist()]
+            rows = [
+                (
+                    order_in_words(kinds[n]),
+                    *(plain(of_gear[n]) for of_gear in turns),
+                    *(shown(of_gear[n], "order") for of_gear in leaking.values()),
+                    *(shown(values[n], "amplitude_um") for values in (*unloaded, *amplitudes[part])),
+                )
+                for n in of_group
+            ]
+            yield Table(tuple(rows), (group, *heads, *under))
+
+
+def _group(kind: str) -> str:
+    """Group of the tables that a kind of order belongs to."""
+    words = kind.split()
+    if not words:
+        return "other orders"
+    if words[0] != "mesh":
+        return "orders of rotation"
+    return "orders of the tooth mesh" if len(words) == 2 else "sidebands of the tooth mesh"
 
 
 def order_in_words(kind: str) -> str:
@@ -131,18 +144,18 @@ def order_in_words(kind: str) -> str:
     Examples
     --------
     >>> order_in_words("mesh 1"), order_in_words("mesh 2 -1 wheel")
-    ('tooth mesh, order 1', 'sideband of mesh order 2, 1 order of the wheel below')
-    >>> order_in_words("pinion 3"), order_in_words("")
-    ('rotation of the pinion, order 3', 'of neither gear')
+    ('mesh order 1', 'mesh order 2 - 1 wheel order')
+    >>> order_in_words("mesh 1 +3 pinion"), order_in_words("pinion 3"), order_in_words("")
+    ('mesh order 1 + 3 pinion orders', 'pinion order 3', 'order of neither gear')
     """
-    name, *numbers = kind.split() or [""]
-    if len(numbers) > 1:
-        mesh, apart, gear = numbers[0], int(numbers[1]), numbers[2]
-        orders = f"{abs(apart)} order{'s' * (abs(apart) > 1)}"
-        return f"sideband of mesh order {mesh}, {orders} of the {gear} {'above' if apart > 0 else 'below'}"
-    if name in GEARS:
-        return f"rotation of the {name}, order {numbers[0]}"
-    return f"tooth mesh, order {numbers[0]}" if name else "of neither gear"
+    if not kind:
+        return "order of neither gear"
+    name, number, *sideband = kind.split()
+    words = f"{name} order {number}"
+    if sideband:
+        apart, gear = int(sideband[0]), sideband[1]
+        words += f" {'+' if apart > 0 else '-'} {abs(apart)} {gear} order{'s' * (abs(apart) > 1)}"
+    return words
 
 
 def deviation_tables(scene: Scene, of_what: str = "") -> Iterator[Table]:

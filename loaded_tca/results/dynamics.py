@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     import xarray
 
     from loaded_tca.arrays import Array
-    from loaded_tca.pairs.gear_pair import GearPair
     from loaded_tca.results.numbers import CycleNumbers
     from loaded_tca.results.revolution import Revolution
 
@@ -54,7 +53,7 @@ PARTS: dict[str, Part] = {
     TORQUE: ((TORQUE,), "N m", "pinion torque T1"),
     PHASE: ((PHASE,), "1", "mesh phase, z1 phi1/(2 pi) modulo the pitches"),
     "pinion_angle_rad": ((PHASE,), "rad", "angle of the pinion phi1 in these pitches from 0"),
-    ORDER: ((ORDER,), "1", "order of the tooth mesh k, a whole number over the pitches; 0: the mean, with its sign"),
+    ORDER: ((ORDER,), "1", "order of the tooth mesh k, in steps of 1/pitches; 0: the mean, with its sign"),
     "order_of_pinion": ((ORDER,), "1", "the order in cycles per turn of the pinion, k z1"),
     "order_of_wheel": ((ORDER,), "1", "the order in cycles per turn of the wheel, k z2"),
     "kind": (
@@ -116,16 +115,6 @@ def dynamics_of_revolution(revolution: Revolution) -> xarray.Dataset:
     return _dataset_of(revolution, arrays, NOT_PERIODIC.format(pitches=pitches, gears=gears) if gears else "")
 
 
-def teeth_and_radii(pair: GearPair) -> dict[str, float]:
-    """Numbers of teeth and base radii [m], by the names of ``PARTS``."""
-    return {
-        "pinion_teeth": pair.teeth[0],
-        "wheel_teeth": pair.teeth[1],
-        "pinion_base_radius_m": 1e-3 * pair.base_radii[0],
-        "wheel_base_radius_m": 1e-3 * pair.base_radii[1],
-    }
-
-
 def _dataset_of(result: CycleNumbers | Revolution, curves: Mapping[str, Any], caveat: str = "") -> xarray.Dataset:
     """The dataset of curves with the numbers of the gears, some of which bevel gears lack, and with conventions."""
     import xarray
@@ -142,7 +131,10 @@ def _constants_of(result: CycleNumbers | Revolution) -> dict[str, Any]:
     """Numbers of the gears, by the names of ``PARTS``; lengths in m."""
     pair, (pressure_angle, base_helix) = result.gear_pair, result.scene.transverse_angles
     return {
-        **teeth_and_radii(pair),
+        "pinion_teeth": pair.teeth[0],
+        "wheel_teeth": pair.teeth[1],
+        "pinion_base_radius_m": 1e-3 * pair.base_radii[0],
+        "wheel_base_radius_m": 1e-3 * pair.base_radii[1],
         "mesh_frequency_Hz_per_pinion_rev_per_s": pair.teeth[0],
         "face_width_m": 1e-3 * result.face_width,
         "working_pressure_angle_rad": pressure_angle,
