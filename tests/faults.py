@@ -701,8 +701,8 @@ FAULTS = (
         for file, text, wrong in (
             (
                 "results/dynamics.py",
-                '"loaded_contact_ratio": curves["loaded_pairs"][:, :-1].mean(axis=-1)',
-                '"loaded_contact_ratio": curves["loaded_pairs"].mean(axis=-1)',
+                "result.loaded_pairs[:, :count].astype(float)",
+                "result.loaded_pairs.astype(float)",
             ),
             (
                 "results/figures.py",
