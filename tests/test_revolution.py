@@ -321,6 +321,20 @@ def test_known_orders_come_back_with_their_phases():
         assert_allclose(of_kind.transmission_error_phase_rad, phase, atol=1e-12)
 
 
+def test_first_teeth_say_where_the_rotation_of_a_gear_begins():
+    """Rigid flanks, an eccentric wheel: from seven teeth further on the order k has turned 7 k pitches further."""
+    changes = {"analysis.torques_Nm": [0.0], "wheel.pitch": {"runout_um": 10.0, "runout_phase_deg": 60.0}}
+    from_0, from_7 = (
+        revolution_of(helical(), "wheel", 1, **changes, **{"revolution.first_pair": first}).to_dynamics()
+        for first in ([0, 0], [3, 7])
+    )
+    assert (from_7.first_pinion_tooth, from_7.first_wheel_tooth) == (3, 7)
+    first, moved = (one.swap_dims(order="kind").sel(kind="wheel 1") for one in (from_0, from_7))
+    assert_allclose(moved.transmission_error_amplitude_m, 5e-6, rtol=1e-9)  # half the runout
+    turned = moved.transmission_error_phase_rad - first.transmission_error_phase_rad
+    assert_allclose(np.exp(1j * turned), np.exp(2j * np.pi * 7.0 / 24.0), rtol=1e-9)
+
+
 def test_curves_for_dynamics_that_do_not_repeat_say_so():
     dynamics = open_turn().to_dynamics()
     assert (dynamics.pitches, dynamics.periodic) == (12, 0)
