@@ -72,7 +72,7 @@ def main() -> tuple[float, float]:
 
     def whole(angle, x):
         names, phase = ("mesh_stiffness_N_per_m", "transmission_error_m"), teeth * angle / (2.0 * np.pi)
-        k, path = (np.interp(phase, curves.mesh_phase, curves[name], period=1.0) for name in names)
+        k, path = (np.interp(phase, curves.mesh_phase, curves[name], period=head["pitches"]) for name in names)
         return max(static + k * (x + path), 0.0)
 
     shape = teeth, radii, natural, 2.0 * DAMPING * mass * natural

@@ -2,6 +2,7 @@
 
 import csv
 import os
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from loaded_tca import load_result
 from loaded_tca.errors import InputError
 from loaded_tca.output import write_dynamics
 from tests.samples.results import changed_scene, result
+from tests.samples.revolutions import small_turn
 
 
 def cycle():
@@ -27,13 +29,14 @@ def out(tmp_path, monkeypatch):
 
 
 def table(path):
-    """Comments of a table, and its columns as numbers; NaN where a cell is empty."""
+    """Comments of a table, and its columns as numbers; NaN where a cell is empty, words as they are."""
     with open(path, encoding="utf-8", newline="") as file:
         lines = file.read().splitlines()
     comments = [line for line in lines if line.startswith("#")]
     assert lines[: len(comments)] == comments
     rows = list(csv.DictReader(lines[len(comments) :]))
-    return comments, {name: np.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}
+    columns = {name: [row[name] if name == "kind" else float(row[name] or "nan") for row in rows] for name in rows[0]}
+    return comments, {name: np.array(values) for name, values in columns.items()}
 
 
 def test_tables_have_the_curves_and_their_orders(run, out):
@@ -58,6 +61,44 @@ def test_tables_have_the_curves_and_their_orders(run, out):
             assert any(told in line for line in comments)
     in_both = {column for name in ("dynamics", "dynamics_orders") for column in table(f"out/{name}.csv")[1]}
     assert in_both >= {str(name) for name, one in dynamics.variables.items() if one.ndim == 2}
+
+
+def test_tables_of_a_revolution_are_those_of_its_curves_and_its_spectrum(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    turn = small_turn()
+    os.mkdir("turn")
+    turn.save("turn/revolution.nc")
+    assert run("dynamics", "turn")[1].splitlines() == ["Written to turn: dynamics.csv, dynamics_orders.csv"]
+    comments, curves = table("turn/dynamics.csv")
+    assert {"# pitches = 24", "# periodic = 1"} <= {line.partition(":")[0] for line in comments}
+    assert not any("Not periodic" in line for line in comments)
+    error = 1e-6 * np.concatenate([turn.error_um(torque) for torque in (0, 1)])
+    assert_allclose(curves["transmission_error_m"], error, rtol=1e-11)  # twelve digits
+    assert_allclose(curves["mesh_phase"], np.tile(0.25 * np.arange(96), 2), rtol=1e-11)
+    comments, orders = table("turn/dynamics_orders.csv")
+    order, amplitude, kind = turn.spectrum(1)
+    rows = (orders["pinion_torque_Nm"] == 60.0) & (orders["order"] > 0.0)
+    assert_allclose(orders["transmission_error_amplitude_m"][rows], 1e-6 * amplitude, rtol=1e-9, atol=1e-18)
+    assert_allclose(orders["order_of_wheel"][rows], order, rtol=1e-11)
+    assert orders["kind"][rows].tolist() == kind.tolist()
+    assert [*orders][1:5] == ["order", "order_of_pinion", "order_of_wheel", "kind"]
+
+
+def test_tables_of_a_revolution_that_does_not_repeat_say_so(tmp_path):
+    turn = small_turn()
+    scene = turn.scene.with_changes({"revolution.pitches": 12})
+    write_dynamics(replace(turn, scene=scene, dataset=turn.dataset.isel(position=range(48))), tmp_path / "mesh.csv")
+    for name in ("mesh.csv", "mesh_orders.csv"):
+        comments, _ = table(tmp_path / name)
+        assert "# Not periodic: 12 pitches are no whole turn of the wheel, whose teeth deviate." in comments
+        assert any(line.startswith("# periodic = 0: ") for line in comments)
+
+
+def test_half_of_a_double_helical_revolution_has_tables_in_its_directory(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    small_turn().save("half_a_revolution.nc")
+    assert run("dynamics", "half_a_revolution.nc")[0] == 0
+    assert sorted(os.listdir("half_a_revolution")) == ["dynamics.csv", "dynamics_orders.csv"]
 
 
 def test_usual_readers_skip_the_words(run, out):

@@ -32,6 +32,8 @@ def rows_of(path):
 
 @pytest.mark.usefixtures("blank_pictures")
 def test_revolution_is_written_with_its_tables_and_pictures(tmp_path, capsys):
+    for old in ("report.html", "dynamics.csv", "dynamics_orders.csv", "revolution_waterfall.png"):  # of another one
+        (tmp_path / old).write_bytes(b"")
     assert main(["revolution", SCENE, "--out", str(tmp_path), *options(*QUICK)]) == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(TABLES + PICTURES)
     output = capsys.readouterr()
@@ -48,6 +50,23 @@ def test_revolution_is_written_with_its_tables_and_pictures(tmp_path, capsys):
     teeth = rows_of(tmp_path / "teeth.csv")
     assert len(teeth) == 17 + 24
     assert teeth[-1]["gear"] == "wheel"
+
+
+@pytest.mark.parametrize(
+    ("command", "scene", "holds", "kind"),
+    [
+        ("revolution", SCENE, "result.nc", "a result"),
+        ("revolution", "examples/scenes/double_helical.toml", "revolution.nc", "a whole revolution"),
+        ("run", SCENE, "revolution.nc", "a whole revolution"),
+        ("run", SCENE, "double_helical_revolution.nc", "a whole revolution of a double helical pair"),
+    ],
+)
+def test_directory_with_another_main_file_is_refused_before_the_analysis(command, scene, holds, kind, tmp_path, capsys):
+    (tmp_path / holds).write_bytes(b"")
+    assert main([command, scene, "--out", str(tmp_path)]) == 2
+    told = f"--out {tmp_path}: holds {kind} ({holds}); give another directory, or remove it"
+    assert told in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == [holds]
 
 
 def test_bad_input_is_one_line(tmp_path, capsys):

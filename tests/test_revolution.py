@@ -1,9 +1,9 @@
 """Whole revolutions under load: limits, slopes, shares, files, refusals."""
 
+import io
 import math
 import re
 from dataclasses import replace
-from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,12 +18,15 @@ from loaded_tca.studies import Study, revolution_figures, run_study
 from loaded_tca.unloaded.tooth_cycle import REACH
 from tests.refusals import refused_calls
 from tests.samples.pictures import told
+from tests.samples.revolutions import FIRST, small_turn
 from tests.samples.root_stress import coarsely
 
 pytestmark = pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")
 
 A_CELL = 3e-4
 """Of the tangent of 16 x 16 cells, of which one more just carries or does not: rounding decides."""
+ROUNDING_um = 1e-12
+"""Of amplitudes of curves of tens of um."""
 AS_ONE_PITCH_um = 1e-4
 """Asked for: without deviations the transmission error of the analysis of one pitch."""
 SLOPES = 2e-3
@@ -70,6 +73,20 @@ def test_revolution_of_alike_teeth_is_the_analysis_of_one_pitch(name, changes):
     assert_allclose(turn.dataset.mesh_stiffness.values[0, places], one.mesh_stiffness[0, :4], rtol=A_CELL)
     of_one, of_turn = one.peak_pressure[0, :4], turn.dataset.peak_pressure.values[0, places]
     assert_allclose(np.nanmax(of_turn, axis=-1), np.nanmax(of_one, axis=-1), rtol=1e-3)
+    pitch, two = one.to_dynamics(), turn.to_dynamics()
+    assert_allclose(two.mesh_phase, 0.25 * np.arange(8))
+    same = np.searchsorted(two.mesh_phase.values, pitch.mesh_phase.values - A_CELL)
+    apart = two.transmission_error_m.values[:, same] - pitch.transmission_error_m.values
+    assert_allclose(apart, 0.0, atol=1e-6 * AS_ONE_PITCH_um)
+    first, of_pitch = ({k: one.sel(order=k) for k in (0, 1)} for one in (two, pitch))
+    for k in (0, 1):
+        series = [
+            one[k].transmission_error_amplitude_m * np.exp(1j * one[k].transmission_error_phase_rad)
+            for one in (first, of_pitch)
+        ]
+        assert_allclose(series[0], series[1], rtol=0.0, atol=1e-6 * AS_ONE_PITCH_um)
+    between = two.transmission_error_amplitude_m.sel(order=[0.5, 1.5])  # no tooth differs from its neighbours
+    assert_allclose(between, 0.0, atol=1e-6 * AS_ONE_PITCH_um)
 
 
 def slopes(scene, tooth, positions):
@@ -126,13 +143,6 @@ def test_tooth_that_is_set_back_carries_less_and_its_neighbours_more():
     assert np.isnan(turn.by_tooth("wheel").load_share.values[0, 20])
     total = turn.dataset.load_share.sum("pair").values
     assert_allclose(total, 1.0, atol=1e-9)
-
-
-@cache
-def small_turn():
-    index = np.random.default_rng(2).normal(0.0, 3.0, 24).tolist()
-    changes = {"wheel.pitch.index_um": index, "analysis.torques_Nm": [20.0, 60.0], "revolution.first_pair": [3, 7]}
-    return revolution_of(helical(), "wheel", 4, **changes)
 
 
 def test_teeth_are_counted_from_the_first_pair():
@@ -257,8 +267,89 @@ def test_curves_for_dynamics_are_those_of_the_dataset():
     radius = 1e-3 * float(data.wheel_base_radius)
     # also below: a product
     assert_allclose(dynamics.transmission_error_m, radius * data.transmission_error, rtol=1e-12)
+    assert_allclose(dynamics.unloaded_transmission_error_m, radius * data.rigid_transmission_error, rtol=1e-12)
     stiffness = data.mesh_stiffness.values * float(data.face_width) * 1e6
     assert_allclose(dynamics.mesh_stiffness_N_per_m, stiffness, rtol=1e-12)
+    assert_allclose(dynamics.pinion_angle_rad, data.pinion_angle, rtol=1e-12)
+    assert_allclose(dynamics.mesh_phase, 0.25 * np.arange(24 * 4), rtol=1e-12)
+    assert_allclose(dynamics.normal_force_per_torque_N_per_Nm[1], data.normal_force[1].sum("pair") / 60.0, rtol=1e-12)
+    assert (dynamics.pitches, dynamics.periodic, dynamics.pinion_teeth, dynamics.wheel_teeth) == (24, 1, 17, 24)
+    assert (dynamics.first_pinion_tooth, dynamics.first_wheel_tooth) == FIRST
+    dynamics.to_netcdf(io.BytesIO(), engine="scipy")  # nothing in it that NetCDF-3 has not
+
+
+def test_orders_for_dynamics_are_those_of_the_spectrum():
+    turn = small_turn()
+    dynamics = turn.to_dynamics()
+    assert dynamics.kind.values[[0, 3, 22, 24]].tolist() == ["mean", "wheel 3", "mesh 1 -2 wheel", "mesh 1"]
+    for torque in (0, 1):
+        order, amplitude, kind = turn.spectrum(torque)
+        found = dynamics.transmission_error_amplitude_m.values[torque]
+        assert_allclose(found[1:], 1e-6 * amplitude, rtol=1e-9, atol=1e-6 * ROUNDING_um)
+        assert_allclose(dynamics.order_of_wheel[1:], order, rtol=1e-12)
+        assert dynamics.kind.values[1:].tolist() == kind.tolist()
+    assert_allclose(dynamics.order_of_pinion, 17.0 / 24.0 * dynamics.order_of_wheel, rtol=1e-12)
+    assert dynamics.order_of_wheel.sel(order=1.0) == 24.0
+
+
+@pytest.mark.parametrize(
+    ("name", "unit"), [("transmission_error", "_m"), ("mesh_stiffness", "_N_per_m"), ("loaded_pairs", "")]
+)
+def test_series_for_dynamics_is_the_curve_over_all_pitches(name, unit):
+    """Of an even number of positions without the order that alternates, which has no phase."""
+    dynamics = small_turn().to_dynamics()
+    curve = dynamics[f"{name}{unit}"].values
+    signs = (-1.0) ** np.arange(curve.shape[-1])
+    curve = curve - signs * (signs * curve).mean(axis=-1, keepdims=True)
+    amplitude, phase = (dynamics[f"{name}_{part}"].values[..., None] for part in (f"amplitude{unit}", "phase_rad"))
+    angle = 17.0 * dynamics.order.values[:, None] * dynamics.pinion_angle_rad.values
+    series = (amplitude * np.cos(angle + phase)).sum(axis=1)
+    assert_allclose(series, curve, rtol=0.0, atol=1e-12 * np.abs(curve).max())  # rounding of sums of 48 terms
+
+
+def test_known_orders_come_back_with_their_phases():
+    """4 um at a sideband two orders of the wheel below the mesh, 2 um once a turn of the wheel, about -9 um."""
+    turn, data = small_turn(), small_turn().dataset
+    of_wheel = 17.0 / 24.0 * data.pinion_angle.values
+    curve = -9.0 + 4.0 * np.cos(22.0 * of_wheel + 0.7) + 2.0 * np.cos(of_wheel - 2.0)
+    error = np.tile(1e-3 * curve / float(data.wheel_base_radius), (2, 1))
+    known = replace(turn, dataset=data.assign(transmission_error=(("torque", "position"), error)))
+    found = known.to_dynamics().swap_dims(order="kind")
+    for kind, amplitude, phase in (("mean", -9.0, 0.0), ("mesh 1 -2 wheel", 4.0, 0.7), ("wheel 1", 2.0, -2.0)):
+        of_kind = found.sel(kind=kind)
+        assert_allclose(of_kind.transmission_error_amplitude_m, 1e-6 * amplitude, rtol=1e-12)
+        assert_allclose(of_kind.transmission_error_phase_rad, phase, atol=1e-12)
+
+
+def test_first_teeth_say_where_the_rotation_of_a_gear_begins():
+    """Rigid flanks, an eccentric wheel: from seven teeth further on the order k has turned 7 k pitches further."""
+    changes = {"analysis.torques_Nm": [0.0], "wheel.pitch": {"runout_um": 10.0, "runout_phase_deg": 60.0}}
+    from_0, from_7 = (
+        revolution_of(helical(), "wheel", 1, **changes, **{"revolution.first_pair": first}).to_dynamics()
+        for first in ([0, 0], [3, 7])
+    )
+    assert (from_7.first_pinion_tooth, from_7.first_wheel_tooth) == (3, 7)
+    first, moved = (one.swap_dims(order="kind").sel(kind="wheel 1") for one in (from_0, from_7))
+    assert_allclose(moved.transmission_error_amplitude_m, 5e-6, rtol=1e-9)  # half the runout
+    turned = moved.transmission_error_phase_rad - first.transmission_error_phase_rad
+    assert_allclose(np.exp(1j * turned), np.exp(2j * np.pi * 7.0 / 24.0), rtol=1e-9)
+
+
+def test_curves_for_dynamics_that_do_not_repeat_say_so():
+    dynamics = open_turn().to_dynamics()
+    assert (dynamics.pitches, dynamics.periodic) == (12, 0)
+    assert "Not periodic: 12 pitches are no whole turn of the wheel, whose teeth" in dynamics.attrs["conventions"]
+    assert "Not periodic" not in small_turn().to_dynamics().attrs["conventions"]
+    both = {"pinion.pitch.runout_um": 5.0, "revolution.pitches": 12}
+    of_both = replace(open_turn(), scene=open_turn().scene.with_changes(both)).to_dynamics()
+    assert "no whole turn of the pinion and of the wheel, whose teeth" in of_both.attrs["conventions"]
+
+
+def test_one_position_has_no_curves_for_dynamics():
+    turn = open_turn()
+    one = turn.scene.with_changes({"revolution.pitches": 1})
+    with pytest.raises(InputError, match=r"^revolution: found 1 position; .* from 2 positions on$"):
+        replace(turn, scene=one, dataset=turn.dataset.isel(position=[0])).to_dynamics()
 
 
 def test_analysis_of_one_pitch_says_that_deviations_are_left_out():
@@ -267,9 +358,14 @@ def test_analysis_of_one_pitch_says_that_deviations_are_left_out():
         analyse(scene)
 
 
+def open_turn():
+    """Half a turn of an eccentric wheel without load, a position in each pitch."""
+    return revolution_of(helical(), 12, 1, **{"wheel.pitch.runout_um": 5.0, "analysis.torques_Nm": [0.0]})
+
+
 def test_revolution_that_is_not_closed_says_so():
     with pytest.warns(match="12 pitches are no whole turn of the wheel"):
-        turn = revolution_of(helical(), 12, 1, **{"wheel.pitch.runout_um": 5.0, "analysis.torques_Nm": [0.0]})
+        turn = open_turn()
     assert not turn.is_closed
     labels = turn.labels()
     assert labels["total_single_flank_deviation_um"] == "single flank deviation over 12 pitches [um]"

@@ -129,10 +129,13 @@ Of a double helical pair sensitivities.csv alone, of both halves together; its d
 half b and the apex offset, too.
 All numbers are to first order; docs/guide/tolerances.md says more."""
 DYNAMICS = """files:
-  FILE                      over the pitch: transmission error in m and rad, mesh stiffness in N/m and N m/rad, tooth
-                            pairs under load, normal force; a row for each torque and mesh phase
-  FILE with _orders added   Fourier coefficients of these curves, amplitudes and phases
-All in SI units; lines that begin with # say what the columns are. The result must have load sharing."""
+  FILE                      over the pitch, or all pitches of a whole revolution: transmission error in m and rad, mesh
+                            stiffness in N/m and N m/rad, tooth pairs under load, normal force; a row for each torque
+                            and mesh phase
+  FILE with _orders added   Fourier coefficients of these curves, amplitudes and phases; of a revolution with sidebands
+                            and orders of rotation, each named
+All in SI units; lines that begin with # say what the columns are, and whether a revolution is periodic. The result of a
+pitch must have load sharing. Double helical pairs have tables of their halves."""
 STUDY = """files in DIR:
   study.nc                  all figures of all variants, to be read by loaded_tca.studies.load_study or xarray
   study.csv                 these figures, one row per variant and torque: torque_Nm, or, where variants differ in
@@ -143,9 +146,10 @@ STUDY = """files in DIR:
   study.rows.jsonl          the variants that are done; the same command continues from there
   study_maps/N.nc           whole results of the variants asked for by --keep-maps, as of 'loaded-tca run'"""
 REPORT = """One HTML file that needs nothing else: what was asked, geometry, load cases, key figures, their accuracy,
-pictures, accuracy warnings with what to do, and the scene file; for a stage its phases, shares and orders; for a study
-what varies, the ranking, best and worst variant; for a design start and optimum; for two results or more what
-differs in their scenes, key figures side by side, and pictures on one scale. It prints on A4. Needs the package jinja2.
+pictures, accuracy warnings with what to do, and the scene file; for a stage its phases, shares and orders; for a whole
+revolution its largest orders and the deviations of the teeth; for a study what varies, the ranking, best and worst
+variant; for a design start and optimum; for two results or more what differs in their scenes, key figures side by side,
+and pictures on one scale. It prints on A4. Needs the package jinja2.
 With --interactive a page for a browser instead, whose sliders move all pictures, with the teeth in space among them;
 for a study parallel coordinates and a scatter plot. The page loads nothing from elsewhere and needs the package plotly,
 too."""
@@ -363,7 +367,8 @@ def _add_comparisons(command: Command) -> None:
 def _add_tables_and_maps(command: Command) -> None:
     """Add the tables for gear dynamics and the ease-off."""
     dynamics = command("dynamics", run_by.dynamics, "write tables that programs of gear dynamics read", DYNAMICS)
-    dynamics.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
+    text = "result.nc, revolution.nc, or the directory that holds one"
+    dynamics.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
     dynamics.add_argument(
         "--out", metavar="FILE", type=_path, help="first table; default: dynamics.csv beside the result"
     )
@@ -468,9 +473,10 @@ def _add_studies(command: Command) -> None:
         default=(),
         help="numbers of the variants, from 0, whose whole results are kept",
     )
-    text = "write a report of a result, several results, a planetary stage, a study or a design as HTML"
+    text = "write a report of a result, a revolution, several results, a stage, a study or a design as HTML"
     report = command("report", run_by.report, text, REPORT)
-    text = "result.nc, stage.nc, double_helical.nc, study.nc, the file of a design, or the directory that holds one"
+    text = "result.nc, revolution.nc, stage.nc, double_helical.nc, double_helical_revolution.nc, study.nc, the file of "
+    text += "a design, or the directory that holds one"
     report.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
     text = "results to compare with the first one, as 'loaded-tca compare' takes them"
     report.add_argument("others", metavar="DIR|FILE", nargs="*", type=_path, help=text)

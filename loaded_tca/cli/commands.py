@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from loaded_tca.cli.directories import (
     INTERACTIVE_REPORT,
     REPORT,
+    files_beside_revolution,
     files_of_ratings,
     outdated_files,
     remove_empty_parts,
@@ -27,10 +28,12 @@ from loaded_tca.cli.inputs import (
     directory_of_part,
     executor_of,
     file_of_report,
+    file_of_revolution,
     index_of_position,
     index_of_torque,
     names_of_results,
     result_file,
+    result_for_dynamics,
     result_of,
     scene_of,
     stage_of,
@@ -168,6 +171,7 @@ def _run_double_helical(scene: DoubleHelicalScene, directory: Path) -> None:
 def revolution(options: argparse.Namespace) -> None:
     """Analyse a whole revolution, write everything into a directory, and show the summary."""
     from loaded_tca.plots.revolution import revolution_figures
+    from loaded_tca.results.revolution import REVOLUTION_FILE
     from loaded_tca.revolution import analyse_revolution, expected_revolution_effort
     from loaded_tca.scene.double_helical import DoubleHelicalScene
 
@@ -176,22 +180,27 @@ def revolution(options: argparse.Namespace) -> None:
     if isinstance(scene, DoubleHelicalScene):
         _double_helical_revolution(scene, directory)
         return
+    require_place_of(directory, REVOLUTION_FILE)
     effort = expected_revolution_effort(scene)
     with progress_bar(effort, "states", effort.contacts // 2) as progress:
         result = analyse_revolution(scene, progress=progress)
-    print_summary(result.summary(), _written(result, directory, revolution_figures(result)))
+    written = _written(result, directory, revolution_figures(result), files_beside_revolution())
+    print_summary(result.summary(), written)
 
 
 def _double_helical_revolution(scene: DoubleHelicalScene, directory: Path) -> None:
     """Analyse a whole revolution of a double helical pair, write everything, and show the summary."""
     from loaded_tca.double_helical import analyse_double_helical_revolution
+    from loaded_tca.double_helical.result import PAIR_REVOLUTION_FILE
     from loaded_tca.double_helical.revolution import expected_halves_revolution_effort
     from loaded_tca.plots import halves_revolution_figures
 
+    require_place_of(directory, PAIR_REVOLUTION_FILE)
     effort = expected_halves_revolution_effort(scene)
     with progress_bar(effort, "states of both halves", effort.contacts // 2) as progress:
         result = analyse_double_helical_revolution(scene, progress=progress)
-    print_summary(result.summary(), _written(result, directory, halves_revolution_figures(result)))
+    written = _written(result, directory, halves_revolution_figures(result), files_beside_revolution())
+    print_summary(result.summary(), written)
 
 
 def _written(
@@ -478,13 +487,12 @@ def _sensitivities_of_halves(options: argparse.Namespace) -> None:
 def dynamics(options: argparse.Namespace) -> None:
     """Write the tables of a result that programs of rotor and gear dynamics read."""
     from loaded_tca.output.tables import DYNAMICS, tables_at, write_dynamics
-    from loaded_tca.results import load_result
 
-    file = result_file(options.result)
+    file = file_of_revolution(options.result)
     out = options.out or directory_of(file) / DYNAMICS
     require((not out.is_dir(), f"--out {out}: a directory; give the name of a file, as {out / DYNAMICS}"))
     check_files(tables_at(out), file)
-    print_files(write_dynamics(load_result(file), out))
+    print_files(write_dynamics(result_for_dynamics(file), out))
 
 
 def ease_off(options: argparse.Namespace) -> None:
@@ -604,7 +612,7 @@ def study(options: argparse.Namespace) -> None:
 
 
 def report(options: argparse.Namespace) -> None:
-    """Write the report of a result, a stage, a study or a design, or of several results beside each other."""
+    """Write the report of a result, a revolution, a stage, a study or a design, or of several results."""
     from loaded_tca.reports import write_html_report
 
     if options.others:

@@ -21,7 +21,8 @@ def require_place_of(directory: Path, main: str) -> None:
     directory : Path
         Need not exist.
     main : str
-        Name of the file that is to be written: that of a result, a stage, a pair of halves, a study or a comparison.
+        Name of the file that is to be written: that of a result, a revolution, a stage, a pair of halves, a study or a
+        comparison.
 
     Raises
     ------
@@ -29,15 +30,18 @@ def require_place_of(directory: Path, main: str) -> None:
         If the directory has a main file of another name.
     """
     from loaded_tca.cli.inputs import DESIGN_FILE, STUDY_FILE
-    from loaded_tca.double_helical.result import PAIR_FILE
+    from loaded_tca.double_helical.result import PAIR_FILE, PAIR_REVOLUTION_FILE
     from loaded_tca.output.result_files import RESULT
     from loaded_tca.output.tables import COMPARISON_DATA
+    from loaded_tca.results.revolution import REVOLUTION_FILE
     from loaded_tca.stages.result import STAGE_FILE
 
     kinds = {
         RESULT: "a result",
         STAGE_FILE: "a stage",
         PAIR_FILE: "a double helical pair",
+        REVOLUTION_FILE: "a whole revolution",
+        PAIR_REVOLUTION_FILE: "a whole revolution of a double helical pair",
         STUDY_FILE: "a study",
         DESIGN_FILE: "a design",
         COMPARISON_DATA: "a comparison of results",
@@ -70,6 +74,16 @@ def names_of_result() -> set[str]:
     others = "at_a_glance.pdf", REPORT, INTERACTIVE_REPORT, STRESS_FIELDS, STRESS_TABLE
     evaluated = *Tribology.file_names(), *files_of_ratings()
     return {*tables, *evaluated, *TEETH_FILES, *others, *(f"{name}.png" for name in pictures)}
+
+
+def files_beside_revolution() -> set[str]:
+    """Names of all files that commands write beside a whole revolution, of a pair or of a double helical one."""
+    from loaded_tca.output.tables import DYNAMICS, tables_at
+    from loaded_tca.plots.double_helical import HALVES_REVOLUTION_PICTURES
+    from loaded_tca.plots.revolution import REVOLUTION_PICTURES
+
+    tables = (path.name for path in tables_at(Path(DYNAMICS)))
+    return {REPORT, *tables, *(f"{name}.png" for name in (*REVOLUTION_PICTURES, *HALVES_REVOLUTION_PICTURES))}
 
 
 def files_of_ratings() -> tuple[str, ...]:

@@ -19,12 +19,14 @@ if TYPE_CHECKING:
     import xarray
 
     from loaded_tca.double_helical import DoubleHelicalResult
+    from loaded_tca.results import Revolution
     from loaded_tca.results.comparison import Comparison
     from loaded_tca.results.mesh_cycle import MeshCycle
+    from loaded_tca.results.result import Result
     from loaded_tca.scene import Scene
     from loaded_tca.scene.load import AnyLoad
     from loaded_tca.scene.written import Writing
-    from loaded_tca.stages import Stage, StageResult
+    from loaded_tca.stages import Stage
     from loaded_tca.studies import DesignResult
 
 STUDY_FILE, DESIGN_FILE = "study.nc", "design.nc"
@@ -179,11 +181,15 @@ def _refuse_what_else_it_holds(directory: Path) -> None:
     from loaded_tca.tribology import Tribology
 
     parts = [one.name for one in sorted(directory.iterdir()) if (one / RESULT).is_file()]
-    for kind in (Revolution, DoubleHelicalRevolution):
+    takers: dict[type[Revolution | DoubleHelicalRevolution], str] = {
+        Revolution: "'loaded-tca report DIR' and 'loaded-tca dynamics DIR'",
+        DoubleHelicalRevolution: "'loaded-tca report DIR'",
+    }
+    for kind, commands in takers.items():
         if (directory / kind.FILE).is_file():
             raise InputError(
-                f"{directory}: holds a whole revolution, which this command does not take: the numbers are in "
-                f"{kind.JSON} and the tables; give the directory of 'loaded-tca run'"
+                f"{directory}: holds a whole revolution, which this command does not take; allowed in {commands}; the "
+                f"numbers are in {kind.JSON} and the tables; give the directory of 'loaded-tca run'"
             )
     if parts:
         these = " or ".join(f"{directory / name}" for name in parts)
@@ -229,36 +235,50 @@ def _file_in(path: Path, *others: str) -> Path:
 
 def directory_of(file: Path) -> Path:
     """Where the files of a result go: its folder, or in it one of its own where it is a mesh of a stage or a half."""
-    from loaded_tca.double_helical.result import DoubleHelicalResult
+    from loaded_tca.double_helical import DoubleHelicalResult, DoubleHelicalRevolution
     from loaded_tca.stages.result import StageResult
 
-    is_part = any(file.name in kind.PARTS.values() for kind in (DoubleHelicalResult, StageResult))
+    kinds = DoubleHelicalResult, DoubleHelicalRevolution, StageResult
+    is_part = any(file.name in kind.PARTS.values() for kind in kinds)
     return file.parent / file.stem if is_part else file.parent
 
 
+def file_of_revolution(path: Path, *others: str) -> Path:
+    """The file of a result or a whole revolution, or one of other names, named by itself or by its directory."""
+    from loaded_tca.double_helical.result import PAIR_REVOLUTION_FILE
+    from loaded_tca.results.revolution import REVOLUTION_FILE
+
+    return _file_in(path, REVOLUTION_FILE, PAIR_REVOLUTION_FILE, *others)
+
+
+def result_for_dynamics(path: Path) -> MeshCycle | Revolution:
+    """The mesh cycle or the whole revolution in a file; what has no tables for dynamics is refused."""
+    from loaded_tca.results import Revolution, load_result
+    from loaded_tca.results.files import REVOLUTION, read_dataset
+
+    return Revolution.load(path) if read_dataset(path).attrs.get("kind") == REVOLUTION else load_result(path)
+
+
 def file_of_report(path: Path) -> Path:
-    """The file of what has a report, a result, stage, study or design, named by itself or by its directory."""
-    return _file_in(path, STUDY_FILE, DESIGN_FILE)
+    """The file of what has a report, a result, revolution, stage, study or design, itself or in its directory."""
+    return file_of_revolution(path, STUDY_FILE, DESIGN_FILE)
 
 
-def subject_of_report(path: Path) -> MeshCycle | StageResult | DoubleHelicalResult | xarray.Dataset | DesignResult:
-    """The result, stage, double helical pair, study or design in a file."""
-    from loaded_tca.results.files import DESIGN, DOUBLE_HELICAL, STAGE, STUDY, read_dataset
-    from loaded_tca.results.mesh_cycle import MeshCycle
+def subject_of_report(path: Path) -> Result | xarray.Dataset | DesignResult:
+    """The result, revolution, stage, double helical pair, study or design in a file."""
+    from loaded_tca.double_helical import DoubleHelicalResult, DoubleHelicalRevolution
+    from loaded_tca.results import MeshCycle, Revolution
+    from loaded_tca.results.files import DESIGN, STUDY, read_dataset
+    from loaded_tca.results.result import JoinedResult
+    from loaded_tca.stages import StageResult
     from loaded_tca.studies import load_design, load_study
 
-    kind = read_dataset(path).attrs.get("kind")
-    if kind == STUDY:
-        return load_study(path)
-    if kind == DOUBLE_HELICAL:
-        from loaded_tca.double_helical import DoubleHelicalResult
-
-        return DoubleHelicalResult.load(path.parent)
-    if kind == STAGE:
-        from loaded_tca.stages import StageResult
-
-        return StageResult.load(path.parent)
-    return load_design(path) if kind == DESIGN else MeshCycle.load(path)
+    kind = read_dataset(path).attrs.get("kind", "")
+    if kind in (STUDY, DESIGN):
+        return load_study(path) if kind == STUDY else load_design(path)
+    kinds = Revolution, StageResult, DoubleHelicalResult, DoubleHelicalRevolution
+    result = next((one for one in kinds if kind == one.KIND), MeshCycle)
+    return result.load(path.parent if issubclass(result, JoinedResult) else path)
 
 
 def index_of_torque(given: float | None, result: MeshCycle | DoubleHelicalResult) -> int | None:

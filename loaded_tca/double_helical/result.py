@@ -38,6 +38,8 @@ OF_TORQUE = re.compile(r"half_[ab]_under_[^/]*_Nm\.nc")
 """Names of files of mesh cycles under other torques than the largest."""
 PAIR_FILE = "double_helical.nc"
 """Name of the file of both halves together."""
+PAIR_REVOLUTION_FILE = "double_helical_revolution.nc"
+"""Name of the file of both halves over a whole revolution."""
 FACES = 1e-3
 """How far the gears may stand from where their faces were analysed, over the width of a half. A motion along the axis
 turns a helix into itself, and moves its ends and modifications by as much: 1e-4 of the motion was left in the

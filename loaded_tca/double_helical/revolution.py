@@ -25,13 +25,14 @@ from loaded_tca.double_helical.analyse import (
     settled,
 )
 from loaded_tca.double_helical.laws import gears_of
-from loaded_tca.double_helical.result import FIGURES, NUMBERS, OfHalves
+from loaded_tca.double_helical.result import FIGURES, NUMBERS, PAIR_REVOLUTION_FILE, OfHalves
 from loaded_tca.effort import Effort
 from loaded_tca.errors import require
 from loaded_tca.plain import plain
 from loaded_tca.results.declared import Number
 from loaded_tca.results.figure import Figure
 from loaded_tca.results.files import HALVES_OVER_TURNS
+from loaded_tca.results.result import figures_of
 from loaded_tca.results.revolution import FIGURES as OF_TURNS
 from loaded_tca.results.revolution import OverTurns, Revolution, Spectrum, orders_table
 from loaded_tca.results.tables import Columns
@@ -73,6 +74,7 @@ def _order(kind: str, under: UnderTorque) -> float:
 
 
 HALVES_REVOLUTION_FIGURES: dict[str, Figure] = {
+    **figures_of({"torque": NUMBERS["torque"]}),
     **{name: figure for name, figure in OF_TURNS.items() if "single_flank" in name or name == "first_mesh_order_um"},
     **{name: figure for name, figure in FIGURES.items() if not any(left in name for left in (*_LEFT_OUT, "root"))},
     "axial_motion_span_um": replace(FIGURES["axial_motion_span_um"], label="  over the revolution, peak to peak"),
@@ -107,7 +109,7 @@ class DoubleHelicalRevolution(OverTurns, OfHalves):
     NUMBERS: ClassVar = HALVES_REVOLUTION_NUMBERS
     COORDINATES: ClassVar = ("torque", "pinion_angle")
     FIGURES: ClassVar = HALVES_REVOLUTION_FIGURES
-    FILE: ClassVar = "double_helical_revolution.nc"
+    FILE: ClassVar = PAIR_REVOLUTION_FILE
     JSON: ClassVar = "double_helical_revolution.json"
     TABLES: ClassVar = {"double_helical_revolution.csv": "positions", "double_helical_orders.csv": "orders"}
     PARTS: ClassVar = {"half_a": "half_a_revolution.nc", "half_b": "half_b_revolution.nc"}

@@ -67,13 +67,18 @@ def held_in_words(scene: DoubleHelicalScene) -> str:
     return f"Each half is a gear of its own. {of_gears} under and between the halves; rims and webs do not{rigid}."
 
 
-def geometry_of_halves(scene: DoubleHelicalScene) -> list[tuple[str, dict[str, list[Row]], list[str]]]:
-    """Name of each half, its overview by subjects, of half b those that may differ, and its warnings on whole gears."""
+def geometry_of_halves(
+    scene: DoubleHelicalScene, positions: int | None = None
+) -> list[tuple[str, dict[str, list[Row]], list[str]]]:
+    """Name of each half, its overview by subjects, of half b those that may differ, and its warnings on whole gears.
+
+    ``positions`` as of :func:`loaded_tca.output.overview.scene_sections`.
+    """
     geometry = []
     for half, own in enumerate(scene.half_scenes(scene.mounting.axial_offset_mm)):
         with noted_accuracy_warnings(given=False) as sentences:
             warn_of_gears(own, own.pair())
-            sections = scene_sections(own)
+            sections = scene_sections(own, positions)
         shown = {
             name: rows
             for name, rows in sections.items()

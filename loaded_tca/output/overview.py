@@ -67,16 +67,17 @@ def overview_of_scene(scene: Scene) -> Overview:
     )
 
 
-def scene_sections(scene: Scene) -> dict[str, list[Row]]:
+def scene_sections(scene: Scene, positions: int | None = None) -> dict[str, list[Row]]:
     """Return the lines of an overview by their subjects, each a label and its cells; errors as ``describe_scene``.
 
-    A line without a label, and the first one of the path of contact, name the columns below them.
+    A line without a label, and the first one of the path of contact, name the columns below them. ``positions``: those
+    of a whole revolution; default: of the pitch that the scene asks for.
     """
     pair = scene.pair()
     return {
         "geometry": [*scene.geometry_rows()],
         "path of contact": [*_path_rows(scene, pair)],
-        "load and analysis": [*_asked_rows(scene, pair)],
+        "load and analysis": [*_asked_rows(scene, pair, positions)],
         "bearings": [*_bearing_rows(scene)],
         "ISO 6336": [*_standard_rows(scene, pair)],
         "strength and rating": [*_strength_rows(scene)],
@@ -99,7 +100,7 @@ def _path_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
                 yield f"  {letter}, {whose}", fixed(length, 4), fixed(math.degrees(roll), 4), fixed(diameter, 4)
 
 
-def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
+def _asked_rows(scene: Scene, pair: GearPair, positions: int | None) -> Iterator[Row]:
     """The load, what the analysis is asked to do, and the bores or journals that it holds where teeth bend."""
     torques, wanted, count = torques_with_columns(scene.torques), scene.analysis, len(scene.torques)
     label = "pinion torque [N m]"
@@ -115,7 +116,8 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     yield Label("load sharing, free edges, compliance", "model", *names), *switches, wanted.compliance
     if any(gear.tip_rounding_mm or gear.side_rounding_mm for gear in (scene.pinion, scene.wheel)):
         yield "pressures at rounded edges", wanted.edge_pressures
-    yield Label("positions, torques", "count", "positions", "torques"), f"{wanted.positions}", f"{len(scene.torques)}"
+    counts = wanted.positions if positions is None else positions, len(scene.torques)
+    yield Label("positions, torques", "count", "positions", "torques"), *map(str, counts)
     if wanted.root_stress:
         yield "root stress", "on"
     if wanted.without_bodies:

@@ -1,7 +1,7 @@
 """Tables of comparisons, dynamics, sensitivities, studies and stresses below a flank, and files beside them.
 
 - Comparison: key figures as a table, and with the differing keys of the scenes as JSON.
-- Dynamics, for programs of rotor and gear dynamics: curves over the pitch, and their Fourier coefficients.
+- Dynamics, for programs of rotor and gear dynamics: curves over the pitches, and their Fourier coefficients.
 - Sensitivities: all of them in NetCDF-3, those of the key figures in a table.
 - Study: every figure of every variant, and the variants in the order of a figure.
 - Stresses below a pressure map: all points in NetCDF-3, those below the highest pressure in a table.
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from loaded_tca.arrays import Array
     from loaded_tca.flank_maps.vh_check import VHCheck
-    from loaded_tca.results import MeshCycle
+    from loaded_tca.results import MeshCycle, Revolution
     from loaded_tca.results.comparison import Comparison
     from loaded_tca.results.sensitivities import Sensitivities
     from loaded_tca.results.subsurface import StressBelow
@@ -154,15 +154,16 @@ def vh_table(check: VHCheck, keys: tuple[str, str]) -> str:
 
 
 @checked
-def write_dynamics(result: MeshCycle, path: FilePath) -> tuple[Path, ...]:
+def write_dynamics(result: MeshCycle | Revolution, path: FilePath) -> tuple[Path, ...]:
     """Write two tables of a result in SI units for models of gear dynamics, both or none.
 
-    One has a row for each torque and mesh phase, the other, with ``_orders`` at the end of its name, a row for each
-    torque and order of the tooth mesh. Lines that begin with ``#`` say what the columns are and give what is no table.
+    One has a row for each torque and mesh phase, over one pitch or the pitches of a revolution; the other, with
+    ``_orders`` at the end of its name, a row for each torque and order of the tooth mesh. Lines that begin with ``#``
+    say what the columns are and give what is no table.
 
     Parameters
     ----------
-    result : MeshCycle
+    result : MeshCycle or Revolution
     path : str or path
         Of the first table, as ``dynamics.csv``; the folder is made if it does not exist.
 
@@ -174,7 +175,7 @@ def write_dynamics(result: MeshCycle, path: FilePath) -> tuple[Path, ...]:
     Raises
     ------
     InputError
-        As ``MeshCycle.to_dynamics``, or if they cannot be written.
+        As ``to_dynamics`` of the result, or if they cannot be written.
     """
     dynamics, (first, orders) = result.to_dynamics(), tables_at(Path(path))
     tables = {first.name: _dynamics_table(dynamics, OVER_PITCH), orders.name: _dynamics_table(dynamics, OVER_ORDERS)}
@@ -188,7 +189,8 @@ def tables_at(first: Path) -> tuple[Path, Path]:
 
 def _dynamics_table(dynamics: xarray.Dataset, dimensions: tuple[str, str]) -> str:
     """The columns of these two dimensions, below comments on them, on all scalars and on what depends on the torque."""
-    own = [name for name, (axes, _, _) in PARTS.items() if axes in (dimensions[1:], dimensions)]
+    of_table = (dimensions[1:], dimensions)
+    own = [name for name, (axes, _, _) in PARTS.items() if axes in of_table and name in dynamics.variables]
     columns = [*dimensions, *(name for name in own if name not in dimensions)]
     lines = ["Gear mesh for dynamics, in SI units", *_told(dynamics), "columns:", *_described(dynamics, columns)]
     head = "".join(f"# {line}\n" for line in lines)
@@ -213,8 +215,10 @@ def _described(dynamics: xarray.Dataset, columns: Sequence[str]) -> Iterator[str
         yield f"  {name}: {dynamics[name].attrs['long_name']}"
 
 
-def _cell(value: float) -> str:
-    """Twelve digits; nothing where unknown."""
+def _cell(value: float | str) -> str:
+    """Twelve digits, nothing where unknown; words as they are."""
+    if isinstance(value, str):
+        return value
     return f"{value:.12g}" if math.isfinite(value) else ""
 
 

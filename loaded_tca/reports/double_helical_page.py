@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 from loaded_tca.output.double_helical_overview import geometry_of_halves, held_in_words, pair_rows
 from loaded_tca.plots import DOUBLE_HELICAL_CAPTIONS, double_helical_figures
 from loaded_tca.plots.style import label_of
-from loaded_tca.reports.page import Table, parts_of, pictures_of, tables_of
+from loaded_tca.reports.page import parts_of, pictures_of, tables_of
 from loaded_tca.reports.rating_page import halves_rating_content
-from loaded_tca.reports.result_page import MOST_TORQUES, explained
-from loaded_tca.results.summary import shown
+from loaded_tca.reports.result_page import MOST_TORQUES, explained, figures_table
 
 if TYPE_CHECKING:
     from loaded_tca.double_helical import DoubleHelicalResult
@@ -32,7 +31,10 @@ def double_helical_content(result: DoubleHelicalResult) -> dict[str, Any]:
         "held": held_in_words(scene),
         "scope": result.scope,
         **halves_geometry(scene),
-        "key_figures": [_figures(result, part) for part in parts_of(result.torque.tolist(), MOST_TORQUES)],
+        "key_figures": [
+            figures_table({name: label_of(name) for name in result.labels()}, result.key_figures()[part])
+            for part in parts_of(result.torque.tolist(), MOST_TORQUES)
+        ],
         "notes": result.notes(),
         "rating": halves_rating_content(result),
         "files": [*result.parts()],
@@ -41,24 +43,19 @@ def double_helical_content(result: DoubleHelicalResult) -> dict[str, Any]:
     }
 
 
-def halves_geometry(scene: DoubleHelicalScene) -> dict[str, Any]:
-    """Return what templates take of a scene: what was asked, the geometry of both halves, the text of the file."""
+def halves_geometry(scene: DoubleHelicalScene, positions: int | None = None) -> dict[str, Any]:
+    """Return what templates take of a scene: what was asked, the geometry of both halves, the text of the file.
+
+    ``positions`` as of :func:`loaded_tca.output.overview.scene_sections`.
+    """
     return {
         "asked": tables_of(pair_rows(scene)),
         "geometry": [
             table
-            for name, sections, _ in geometry_of_halves(scene)
+            for name, sections, _ in geometry_of_halves(scene, positions)
             for table in tables_of(
                 [*chain.from_iterable(sections.values())], f"{name.capitalize()}, z from the groove outwards"
             )
         ],
         "scene_toml": scene.to_toml(),
     }
-
-
-def _figures(result: DoubleHelicalResult, part: slice) -> Table:
-    """Every figure under some torques."""
-    figures = result.key_figures()[part]
-    first, *names = result.labels()
-    rows = ((label_of(name), *(shown(row[name], name) for row in figures)) for name in names)
-    return Table(tuple(rows), (label_of(first), *(shown(row[first], first) for row in figures)))

@@ -25,9 +25,11 @@ from loaded_tca.reports.comparison_page import comparison_content
 from loaded_tca.reports.double_helical_page import double_helical_content, halves_geometry
 from loaded_tca.reports.page import Table, pictures_of
 from loaded_tca.reports.result_page import explained, result_content, scene_content, stage_content, stage_geometry
+from loaded_tca.reports.revolution_page import revolution_content
 from loaded_tca.results.comparison import Comparison
 from loaded_tca.results.files import STUDY, FilePath, make_directory, replace_file
 from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.revolution import OverTurns
 from loaded_tca.results.summary import shown, shown_torque
 from loaded_tca.results.warnings import without_place
 from loaded_tca.scene import Scene, parse_scene
@@ -71,17 +73,18 @@ def write_html_report(
     interactive: bool = False,
     coast: MeshCycle | None = None,
 ) -> Path:
-    """Write the report of a result, a comparison, a stage, a study or a design: one HTML file that needs no other.
+    """Write the report of a result, a revolution, a comparison, a stage, a study or a design: one HTML file.
 
     It tells what was asked, the geometry, the load cases, the key figures with their units and how accurate they are,
-    every accuracy warning with its meaning, and the scene file. It prints on A4. The same subject and date give the
-    same file.
+    every accuracy warning with its meaning, and the scene file. It needs no other file, and prints on A4. The same
+    subject and date give the same file.
 
     Parameters
     ----------
-    subject : MeshCycle, Comparison, StageResult, DoubleHelicalResult, xarray.Dataset or DesignResult
-        A result; several as :func:`loaded_tca.results.compare_results` returns them; a planetary stage; a double
-        helical pair; a study as :func:`loaded_tca.studies.run_study` returns it; a design.
+    subject : MeshCycle, Revolution, Comparison, StageResult, DoubleHelicalResult, xarray.Dataset or DesignResult
+        A result; a whole revolution, also a ``DoubleHelicalRevolution``; several results as
+        :func:`loaded_tca.results.compare_results` returns them; a planetary stage; a double helical pair; a study as
+        :func:`loaded_tca.studies.run_study` returns it; a design.
     path : str or path
         Of the file; its directory is made if it does not exist.
     date : str, optional
@@ -155,12 +158,15 @@ def write_html_report(
         elif isinstance(subject, StageResult):
             template, content = "stage.html.j2", stage_content(subject)
             date = date or subject.date
+        elif isinstance(subject, OverTurns):
+            template, content = "revolution.html.j2", revolution_content(subject)
+            date = date or subject.date
         elif is_study:
             template, content = "study.html.j2", study_content(subject, rank_by, axes)
         else:
             raise InputError(
-                f"report: found a {type(subject).__name__}; allowed a result, a comparison, a stage, a double "
-                "helical pair, a study or a design"
+                f"report: found a {type(subject).__name__}; allowed a result, a whole revolution, a comparison, a "
+                "stage, a double helical pair, a study or a design"
             )
     content = {"version": version("loaded_tca"), **content}
     content["date"] = page.shown_date(date)

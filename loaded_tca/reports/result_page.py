@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -95,9 +95,12 @@ def _lubrication(result: MeshCycle) -> dict[str, Any] | None:
     }
 
 
-def scene_content(scene: Scene) -> dict[str, Any]:
-    """Return what the templates take of a scene: what was asked, the geometry, the text of the file."""
-    sections = scene_sections(scene)
+def scene_content(scene: Scene, positions: int | None = None) -> dict[str, Any]:
+    """Return what the templates take of a scene: what was asked, the geometry, the text of the file.
+
+    ``positions`` as of :func:`loaded_tca.output.overview.scene_sections`.
+    """
+    sections = scene_sections(scene, positions)
     asked = [*sections["load and analysis"], *sections["mounting errors, edges and modifications"]]
     path = sections["path of contact"]
     geometry = [
@@ -264,16 +267,21 @@ def stage_geometry(stage: Stage) -> dict[str, Any]:
     }
 
 
+def figures_table(labels: Mapping[str, str], figures: Sequence[Figures]) -> Table:
+    """Figures by their names under some torques, the first of them, the torque, at the head of its columns."""
+    head, *rows = ((label, *(shown(row[name], name) for row in figures)) for name, label in labels.items())
+    return Table(tuple(rows), head)
+
+
 def _stage_figures(result: StageResult, part: slice) -> Table:
     """Every figure under some torques."""
-    figures = result.key_figures()[part]
-    first, *names = result.known_figures()
-    heads = {name: label_of(name) for name in names}
-    heads |= {
-        name: f"{heads[name]}, {edge}" for name in names if "_edge_" in name and (edge := result.kind_of_edge(name))
+    labels = {name: label_of(name) for name in result.known_figures()}
+    labels |= {
+        name: f"{label}, {edge}"
+        for name, label in labels.items()
+        if "_edge_" in name and (edge := result.kind_of_edge(name))
     }
-    rows = ((heads[name], *(shown(row[name], name) for row in figures)) for name in names)
-    return Table(tuple(rows), (label_of(first), *(shown(row[first], first) for row in figures)))
+    return figures_table(labels, result.key_figures()[part])
 
 
 def _shares(result: StageResult) -> Table:

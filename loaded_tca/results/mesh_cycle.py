@@ -307,7 +307,7 @@ class MeshCycle(CycleNumbers, AnalysisResult):
         >>> scene = read_scene("examples/scenes/mesh_cycle_spur.toml").with_changes(changes)
         >>> dynamics = analyse(scene).to_dynamics()
         >>> dynamics.mesh_phase.values, dynamics.order.values
-        (array([0.  , 0.25, 0.5 , 0.75]), array([0, 1], dtype=int32))
+        (array([0.  , 0.25, 0.5 , 0.75]), array([0., 1.]))
         """
         return dynamics_of(self)
 

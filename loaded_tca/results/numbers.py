@@ -99,7 +99,7 @@ class CycleNumbers(Numbers):
     @property
     def bending(self) -> str:
         """Whether teeth bend, in words."""
-        return "teeth bend" if self.scene.analysis.teeth_bend else "teeth do not bend"
+        return self.scene.analysis.bending
 
     @property
     def peak_column(self) -> NDArray[np.int_]:

@@ -19,7 +19,7 @@ from loaded_tca.arrays import GEARS, Array, index_checks
 from loaded_tca.errors import require
 from loaded_tca.plain import plain
 from loaded_tca.results.declared import CYCLE, OVER_CYCLE, Number, Row
-from loaded_tca.results.dynamics import PARTS, TORQUE, teeth_and_radii
+from loaded_tca.results.dynamics import dynamics_of_revolution
 from loaded_tca.results.figure import ROOT, Figure
 from loaded_tca.results.files import REVOLUTION
 from loaded_tca.results.numbers import index_or_largest
@@ -34,9 +34,12 @@ if TYPE_CHECKING:
 
     import xarray
 
+    from loaded_tca.pairs.gear_pair import GearPair
     from loaded_tca.results.pressure_map import PressureMap
     from loaded_tca.scene import Scene
 
+REVOLUTION_FILE = "revolution.nc"
+"""Name of the file of a revolution."""
 ALIKE = 1e-6
 """Relative difference of numbers of two tooth pairs that are alike: states a pitch apart, on the same grids, are solved
 to rounding and to the tolerance of the balance."""
@@ -268,7 +271,7 @@ class OverTurns(AnalysisResult):
         """
         cycles = np.arange(1, (self.pitches * self.per_pitch - 1) // 2 + 1)
         leaking = {}
-        for gear in open_turns(self.scene, self.pitches):
+        for gear in self.open_gears:
             teeth = self.teeth[GEARS.index(gear)]
             beside = np.round(cycles * teeth / self.pitches).astype(int) + np.array([[0], [-1], [1]])
             away = np.abs(beside * self.pitches / teeth - cycles)
@@ -299,7 +302,12 @@ class OverTurns(AnalysisResult):
     @property
     def is_closed(self) -> bool:
         """Whether the revolution is whole turns of every gear whose teeth deviate."""
-        return not open_turns(self.scene, self.pitches)
+        return not self.open_gears
+
+    @property
+    def open_gears(self) -> list[str]:
+        """Gears whose teeth deviate, and of which the revolution is no whole turn."""
+        return open_turns(self.scene, self.pitches)
 
     def under(self, torque: int) -> UnderTorque:
         """What figures are read off: the revolution under a torque, by its index."""
@@ -331,7 +339,7 @@ class Revolution(OverTurns):
     KIND: ClassVar = REVOLUTION
     WHAT: ClassVar = "a whole revolution"
     TITLE: ClassVar = "Whole revolution"
-    FILE: ClassVar = "revolution.nc"
+    FILE: ClassVar = REVOLUTION_FILE
     JSON: ClassVar = "revolution.json"
     TABLES: ClassVar = {"revolution.csv": "positions", "teeth.csv": "teeth", "orders.csv": "orders"}
     NUMBERS: ClassVar = REVOLUTION_QUANTITIES
@@ -345,6 +353,11 @@ class Revolution(OverTurns):
     def __repr__(self) -> str:
         torques, positions = (self.dataset.sizes[name] for name in CYCLE)
         return f"Revolution({self.pitches} pitches x {self.per_pitch} positions, {torques} torques, {positions} each)"
+
+    @cached_property
+    def gear_pair(self) -> GearPair:
+        """The gears of the scene in space."""
+        return self.scene.pair()
 
     def findings(self) -> tuple[str, ...]:
         """Return a sentence for each torque whose peak pressure lies in slices at an edge.
@@ -407,36 +420,27 @@ class Revolution(OverTurns):
         return self.values(name)[..., int(np.abs(self.pair).argmin())]
 
     def to_dynamics(self) -> xarray.Dataset:
-        """Return curves over the revolution in SI units, for models of gear dynamics, as ``MeshCycle.to_dynamics``.
+        """Return curves over the revolution and their Fourier coefficients in SI units, for models of gear dynamics.
 
-        Every name ends in its unit.
+        Names, units and conventions are those of :meth:`loaded_tca.MeshCycle.to_dynamics`, whose curves are over one
+        pitch.
 
         Returns
         -------
         xarray.Dataset
-            Over ``pinion_torque_Nm`` and ``pinion_angle_rad``: ``transmission_error_m`` and ``_rad``,
-            ``mesh_stiffness_N_per_m``, ``loaded_pairs``; ``unloaded_transmission_error_m``; base radii, numbers of
-            teeth, and ``pitches``.
-        """
-        import xarray
+            Over ``pinion_torque_Nm`` and ``mesh_phase``, which runs from 0 to ``pitches``, and over the torque and
+            ``order``. Orders are those of the tooth mesh in steps of 1/``pitches``: a curve is x(phi1) = amplitude_0 +
+            sum of amplitude_k cos(k z1 phi1 + phase_k). ``order_of_pinion`` and ``order_of_wheel`` have them in
+            cycles per turn, ``kind`` their names as ``spectrum`` has them. ``first_pinion_tooth`` and
+            ``first_wheel_tooth`` are at the pitch point at the pinion angle 0. ``periodic`` is 0 where the pitches are
+            no whole turn of a gear whose teeth deviate, as ``attrs["conventions"]`` says, else 1.
 
-        data, angle = self.dataset, "pinion_angle_rad"
-        gears = teeth_and_radii(self.scene.pair())
-        radius, error = gears["wheel_base_radius_m"], data["transmission_error"].values
-        curves = {
-            "transmission_error_rad": error,
-            "transmission_error_m": radius * error,
-            "mesh_stiffness_N_per_m": 1e6 * float(data["face_width"]) * data["mesh_stiffness"].values,
-            "loaded_pairs": data["loaded_pairs"].values,
-            "unloaded_transmission_error_m": radius * data["rigid_transmission_error"].values,
-        }
-        arrays: dict[str, Any] = {
-            name: ((TORQUE, angle)[-curve.ndim :], curve, {"units": PARTS[name][1]}) for name, curve in curves.items()
-        }
-        arrays |= {name: ((), number, {"units": PARTS[name][1]}) for name, number in gears.items()}
-        arrays["pitches"] = ((), self.pitches, {"units": "1"})
-        coordinates = {TORQUE: 1e-3 * self.torque, angle: data["pinion_angle"].values}
-        return xarray.Dataset(arrays, coordinates, {"title": self.scene.title})
+        Raises
+        ------
+        InputError
+            If the revolution has one position alone.
+        """
+        return dynamics_of_revolution(self)
 
 
 def _peak_finding(under: UnderTorque) -> str:

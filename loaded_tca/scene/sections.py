@@ -334,6 +334,11 @@ class Analysis(Section):
         return self.compliance != "contact"
 
     @property
+    def bending(self) -> str:
+        """Whether teeth bend, in words."""
+        return "teeth bend" if self.teeth_bend else "teeth do not bend"
+
+    @property
     def without_bodies(self) -> str:
         """Settings with which no gear body is meshed; empty where none is."""
         ways = ['analysis.compliance = "contact"'] if self.teeth_bend else []

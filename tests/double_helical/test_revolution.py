@@ -2,6 +2,7 @@
 
 import csv
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -121,10 +122,15 @@ def test_command_writes_both_halves_with_orders_of_the_shuttling(wobbling, tmp_p
         assert "axial_motion_at_1600_Nm_um" in next(csv.reader(file))
     with pytest.raises(InputError, match="a whole revolution of a double helical pair, not the result of a mesh cycle"):
         load_result(tmp_path / "out" / "double_helical_revolution.nc")
-    assert main(["report", str(tmp_path / "out")]) == 2
+    assert main(["plot", str(tmp_path / "out")]) == 2
     told = capsys.readouterr().err
-    assert "holds a whole revolution" in told
+    assert "holds a whole revolution, which this command does not take; allowed in 'loaded-tca report DIR'; " in told
     assert "the numbers are in double_helical_revolution.json and the tables" in told
+    assert main(["dynamics", str(tmp_path / "out")]) == 2
+    assert "half_a_revolution.nc and half_b_revolution.nc beside it are revolutions" in capsys.readouterr().err
+    monkeypatch.setattr("loaded_tca.reports.page.svg_of", lambda *_: "<svg></svg>")  # made but not drawn
+    assert main(["report", str(tmp_path / "out")]) == 0
+    assert "over a whole revolution of a double helical pair" in (tmp_path / "out" / "report.html").read_text()
 
 
 def test_a_revolution_under_several_torques_comes_back_from_its_files(tmp_path):
@@ -136,17 +142,15 @@ def test_a_revolution_under_several_torques_comes_back_from_its_files(tmp_path):
     assert again.summary() == revolution.summary()
 
 
-def test_orders_of_the_shuttling_are_those_of_its_curve(wobbling):
-    """Of a curve over a turn of 12 pitches that is a cosine of the wheel's rotation."""
-    turn = wobbling.dataset.isel(position=[0] * TEETH)
+def shuttling(revolution):
+    """A turn of 12 pitches whose axial motion is a cosine of the wheel's rotation of 10 um; all else is constant."""
     curve = 0.01 * np.cos(2.0 * np.pi * np.arange(TEETH) / TEETH)
-    scene = wobbling.scene.with_changes({"revolution.pitches": "wheel"})
-    whole = DoubleHelicalRevolution(
-        scene=scene,
-        dataset=turn.assign(axial_motion=(("torque", "position"), curve[None])),
-        half_a=wobbling.half_a,
-        half_b=wobbling.half_b,
-    )
+    turn = revolution.dataset.isel(position=[0] * TEETH).assign(axial_motion=(("torque", "position"), curve[None]))
+    return replace(revolution, scene=revolution.scene.with_changes({"revolution.pitches": "wheel"}), dataset=turn)
+
+
+def test_orders_of_the_shuttling_are_those_of_its_curve(wobbling):
+    whole = shuttling(wobbling)
     spectrum = whole.axial_spectrum(0)
     assert_allclose(spectrum.amplitude[spectrum.order == 1.0], 10.0)
     figures = whole.key_figures()[0]

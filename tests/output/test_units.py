@@ -400,6 +400,8 @@ def dynamics():
         "pinion_base_radius_m": 1e-3 * BASE_RADII[0],
         "wheel_base_radius_m": metres,
         "face_width_m": 1e-3 * FACE,
+        "pitches": 1,
+        "periodic": 1,
         "working_pressure_angle_rad": math.radians(20.0),
         "pinion_base_helix_angle_rad": 0.0,
     }

@@ -691,7 +691,7 @@ def design_dataset():
 def test_other_subjects_are_refused(subject, tmp_path):
     with pytest.raises(
         InputError,
-        match=r"report: found a \w+; allowed a result, a comparison, a stage, a double helical pair, a study",
+        match=r"report: found a \w+; allowed a result, a whole revolution, a comparison, a stage, a double",
     ):
         write_html_report(subject, tmp_path / "report.html")
     assert not [*tmp_path.iterdir()]
