@@ -85,6 +85,10 @@ Fourier series: x(phi1) = amplitude_0 + sum over k of amplitude_k cos(k z1 phi1 
 The unmodified, aligned pair touches at the pitch point of mid-face at phi1 = phi2 = 0; both angles grow in the motion.
 The transmission error is absolute: 0 for that pair, negative where the wheel stays behind.
 The mesh stiffness is a tangent, positive: d(T1/r_b1) = k |d(r_b2 TE)|; about the pinion's axis it is k r_b1^2."""
+ON_SUPPORTS = """\
+The transmission errors contain how shafts and bearings give way under the mean load; the mesh stiffness does not, so
+that here it is no derivative of r_b2 TE: a model of the shafts has that part. Take the curve of the transmission error
+less its mean, or analyse the scene without its shafts."""
 NOT_PERIODIC = """\
 Not periodic: {pitches} pitches are no whole turn of the {gears}, whose teeth deviate.
 The curves jump where they are repeated, and orders of the {gears} leak into the orders beside them."""
@@ -184,7 +188,8 @@ def _attributes_of(result: CycleNumbers | Revolution, caveat: str) -> dict[str, 
     """What stands beside the numbers: where they are from, and what their signs mean."""
     driving, analysis = "pinion" if result.gear_pair.driving > 0 else "wheel", result.scene.analysis
     held = ", from bores that are held rigid" if analysis.teeth_bend else ""
-    lines = filter(None, (CONVENTIONS, f"The {driving} drives; {analysis.bending}{held}.", caveat))
+    supported = ON_SUPPORTS if result.scene.is_supported else ""
+    lines = filter(None, (CONVENTIONS, f"The {driving} drives; {analysis.bending}{held}.", supported, caveat))
     return {"title": result.scene.title, "version": result.version, "conventions": "\n".join(lines)}
 
 

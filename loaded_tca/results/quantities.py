@@ -40,12 +40,12 @@ QUANTITIES: dict[str, Part] = {
     "mesh_stiffness": (
         CYCLE,
         "N/(mm um)",
-        "derivative of the force over the face width with respect to the transmission error",
+        "derivative of the force over the face width with respect to the transmission error, without supports",
     ),
     "secant_stiffness": (
         CYCLE,
         "N/(mm um)",
-        "force over the face width, divided by the transmission error that the load adds",
+        "force over the face width, divided by the transmission error that the load adds on rigid supports",
     ),
     "loaded_pairs": (CYCLE, "1", "number of tooth pairs under load"),
     "load_share": Number(PAIRS, "1", "share of the tooth pair in the torque", columns=("load_share_pair_{}",)),

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from loaded_tca import analyse, read_scene
 from loaded_tca.results import load_result
 from tests.refusals import refused_calls
-from tests.samples.results import changed, result
+from tests.samples.results import SCENES, changed, result
 
 TORQUES = 40.0, 260.0
 SAME_PLACE = 2e-3
@@ -165,6 +166,22 @@ def test_every_variable_has_its_unit_at_the_end_of_its_name():
         assert one.attrs["long_name"]
         assert str(name).endswith(endings.get(one.attrs["units"], "")), name
     assert "The pinion drives; teeth do not bend." in dynamics.attrs["conventions"]
+
+
+@pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")  # few cells
+def test_gears_on_supports_are_said_to_give_way_in_the_transmission_error_alone():
+    """Two torques 2 % apart: the tangent of the tables is that of the teeth, several times the slope of the error."""
+    compliance = [[1e-5 if i == j < 3 else 0.0 for j in range(6)] for i in range(6)]  # mm/N
+    few = {"analysis.positions": 2, "analysis.torques_Nm": (128.7, 131.3), "analysis.cells": (8, 16)}
+    scene = read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(few | {"analysis.accuracy": None})
+    for supports in ({}, {"wheel.support.compliance": compliance}):
+        found = analyse(scene.with_changes({"analysis.compliance": "contact", **supports})).to_dynamics()
+        slope = np.diff(found.pinion_torque_Nm) / found.pinion_base_radius_m.item()
+        slope = slope / -np.diff(found.transmission_error_m.values[:, 0])
+        stiffness = found.mesh_stiffness_N_per_m.values[:, 0].mean()
+        said = "here it is no derivative of r_b2 TE" in found.attrs["conventions"]
+        assert said == bool(supports)
+        assert (stiffness > 2.0 * slope[0]) if supports else abs(stiffness / slope[0] - 1.0) < 0.05  # of few cells
 
 
 def test_dataset_is_the_same_of_a_file(tmp_path):
