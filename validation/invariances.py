@@ -144,7 +144,7 @@ def told(result: MeshCycle) -> Array:
     return np.asarray(np.nansum(result.load_share * result.discretisation_error, axis=-1))
 
 
-def of_pairs(result: MeshCycle, name: str, pairs: Array) -> Array:
+def of_pairs(result: MeshCycle, name: str, pairs: Array | Indices) -> Array:
     """A quantity of tooth pairs by their numbers (torque, position, pair), zero of those that carry nothing."""
     values = np.nan_to_num(np.asarray(getattr(result, name)))
     columns = {int(number): k for k, number in enumerate(result.pair)}
