@@ -20,7 +20,7 @@ import numpy as np
 
 from loaded_tca import AccuracyWarning, MeshCycle, analyse, analyse_revolution, load_result
 from loaded_tca.analysis import grid_of
-from loaded_tca.arrays import GEARS, Array
+from loaded_tca.arrays import GEARS, Array, Indices
 from loaded_tca.compliance import model_of
 from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helical
 from loaded_tca.errors import noted_accuracy_warnings
