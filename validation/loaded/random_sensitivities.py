@@ -34,10 +34,12 @@ SEEDS, ALL_SEEDS = (0, 3, 5, 8), range(20)
 """Seeds of the table are a helical, a spur, a straight bevel and a face-milled pair; teeth of two of them bend."""
 GRID = {"positions": 5, "cells": (48, 96), "accuracy": None}
 SHARE, WARNED = "load share", "load share, with a warning"
-STEP, STEP_OF_SHARES, LEAST, CLEAN, NEAR = 0.1, 0.5, 1e-2, 0.05, 0.05
-"""Narrower step over the usual tolerance of a key, and that of load shares; least size of a slope over the figure, for
-that tolerance; scatter of slopes that are judged; and by what a derivative is near them. The last three are relative.
-"""
+STEPS, STEPS_OF_SHARES = (0.1, 0.2), (1.0, 0.5)
+"""Over the usual tolerance of a key: step of the slopes that derivatives are seen beside, and of those that show how
+much they scatter."""
+LEAST, CLEAN, NEAR = 1e-2, 0.05, 0.05
+"""Least size of a slope over the figure, for the usual tolerance of a key; scatter of slopes that are judged; and by
+what a derivative is near them; all relative."""
 MOST_OFF = {"transmission error": 0.05, SHARE: 0.05}
 """Part of the comparisons that may be farther off. The others are shown: strips of K_Hbeta and slices of peaks and line
 loads change over at kinks, and edges cut them (``docs/how_it_works/errors.md``)."""
@@ -99,16 +101,11 @@ def _of_scene(seed: int) -> Iterator[tuple[str, Comparison]]:
     slopes, base = result.sensitivities([*tolerances]), _figures(result, result.pair)
     for number, (key, tolerance) in enumerate(tolerances.items()):
         try:
-            by_steps = {
-                part: _differences(scene, result, key, part * tolerance)
-                for step in (STEP, STEP_OF_SHARES)
-                for part in (step, 2.0 * step)
-            }
+            by_steps = {part: _differences(scene, result, key, part * tolerance) for part in (*STEPS, *STEPS_OF_SHARES)}
         except LoadedTCAError:
             continue  # an amount below zero, or a start off the flank
         for figure, own in _slopes(slopes, result, number).items():
-            step = STEP_OF_SHARES if figure == SHARE else STEP
-            near, far = by_steps[step][figure], by_steps[2.0 * step][figure]
+            near, far = (by_steps[part][figure] for part in (STEPS_OF_SHARES if figure == SHARE else STEPS))
             if near.shape != own.shape or far.shape != own.shape:
                 continue  # another tooth pair comes near
             known = np.isfinite(own) & np.isfinite(near) & np.isfinite(far)
