@@ -162,6 +162,15 @@ SHARES_BY_GRIDS = Kind(
     "smaller",
     "more `cells`, or a smaller `accuracy`; compare two grids",
 )
+PAIR_LEAVES = Kind(
+    "a tooth pair with {share:.2g}% of the torque loses its load at a change by {change:+.2g} {unit}, where load "
+    "shares have a kink: over a change by {usual:g} {unit} to that side derivatives are off by at least {size:.0%} of "
+    "the largest ({key}; {count} of {keys} keys)",
+    "beyond this change the pair carries nothing, and the other pairs share the whole torque. Derivatives are those of "
+    "the pairs that carry load now, and smaller cells do not change them",
+    "use the derivatives up to that change only; analyse values on both sides of the present one; do not use the "
+    "spread to first order",
+)
 PEAKS_ALIKE = Kind(
     "two places of a contact have nearly the same pressure, {lacking:.2%} apart, so that its peak pressure has a kink: "
     "the derivative is {slope:.3g} MPa per {unit} at one place and {other:.3g} MPa per {unit} at the other ({key}; "

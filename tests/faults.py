@@ -4081,6 +4081,13 @@ FAULTS = (
         "counts = wanted.positions,",
         "reports/test_revolution_report.py::test_report_has_its_sections_and_the_figures_of_the_result",
     ),
+    Fault(
+        "derivatives of shares: a pair that loses its load within a usual change is not told",
+        "results/sensitivities.py",
+        "warn_of_leaving_pairs(self.keys, self.result.load_share, slopes)",
+        "warn_of_leaving_pairs(self.keys, self.result.load_share, 0.0 * slopes)",
+        "results/test_slope_limits.py::test_a_pair_that_loses_its_load_within_a_usual_change_is_told_with_the_change",
+    ),
 )
 
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from loaded_tca import AccuracyWarning, MeshCycle, analyse, analyse_revolution, load_result
 from loaded_tca.analysis import grid_of
-from loaded_tca.arrays import GEARS, Array
+from loaded_tca.arrays import GEARS, Array, Indices
 from loaded_tca.compliance import model_of
 from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helical
 from loaded_tca.errors import noted_accuracy_warnings
@@ -144,7 +144,7 @@ def told(result: MeshCycle) -> Array:
     return np.asarray(np.nansum(result.load_share * result.discretisation_error, axis=-1))
 
 
-def of_pairs(result: MeshCycle, name: str, pairs: Array) -> Array:
+def of_pairs(result: MeshCycle, name: str, pairs: Array | Indices) -> Array:
     """A quantity of tooth pairs by their numbers (torque, position, pair), zero of those that carry nothing."""
     values = np.nan_to_num(np.asarray(getattr(result, name)))
     columns = {int(number): k for k, number in enumerate(result.pair)}

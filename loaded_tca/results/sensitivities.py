@@ -39,7 +39,7 @@ from loaded_tca.results.figure_slopes import (
 )
 from loaded_tca.results.gap_growth import GapGrowth, MotionGrowth, curvature_growth
 from loaded_tca.results.slice_pressure import InnerPeak, SlicePeak, other_slice_pressures, rough_peaks
-from loaded_tca.results.slope_limits import ALIKE, warn_of_alike_peaks, warn_of_share_grids
+from loaded_tca.results.slope_limits import ALIKE, warn_of_alike_peaks, warn_of_leaving_pairs, warn_of_share_grids
 from loaded_tca.results.warnings import warn_of_contacts
 from loaded_tca.separation.pair_change import is_of_modifications
 from loaded_tca.threads import one_blas_thread
@@ -228,7 +228,8 @@ class Sensitivities:
     def load_share(self) -> Array:
         """Derivatives of the load shares, (torque, position, pair, key) [1 per unit]; zero where nothing is carried.
 
-        An AccuracyWarning says by how much derivatives depend on the grids, if this is above 5 %.
+        An AccuracyWarning says by how much derivatives depend on the grids, if this is above 5 %, and another one
+        which change of a key takes the load from a tooth pair, if this is less than a usual change of the key.
         """
         state = self.tangents.state
         torque, share = self.result.torque[self.places[0]][state], self.result.load_share[*self._grids]
@@ -238,6 +239,7 @@ class Sensitivities:
         shared = ~np.isnan(self.result.load_share) & np.isfinite(self.transmission_error).any(axis=-1, keepdims=True)
         slopes[shared & np.isnan(slopes).all(axis=-1)] = 0.0
         warn_of_share_grids(self.keys, self.result.load_share, slopes, self.load_share_by_grids)
+        warn_of_leaving_pairs(self.keys, self.result.load_share, slopes)
         return slopes
 
     @cached_property

@@ -1,4 +1,4 @@
-"""Warnings about derivatives of load shares that depend on the grid, and of peak pressures that have a kink.
+"""Warnings about derivatives of load shares that depend on the grid or end at a kink, and of peak pressures at a kink.
 
 Derivatives with which a usual change of the key changes the figure by less than a thousandth cause no warning.
 """
@@ -63,6 +63,35 @@ def warn_of_share_grids(keys: Sequence[str], shares: Array, slopes: Array, by_gr
         counted = {"key": keys[own], "count": np.count_nonzero(above), "keys": len(keys)}
         sentence = kinds.SHARES_BY_GRIDS.sentence(
             size=sizes[own], largest=_largest(slopes)[own], unit=ending_of(keys[own]), **counted
+        )
+        give_accuracy_warning(sentence)
+
+
+def warn_of_leaving_pairs(keys: Sequence[str], shares: Array, slopes: Array) -> None:
+    """Warn of tooth pairs that lose their load within a usual change of a key, where load shares have a kink.
+
+    ``slopes`` (torque, position, pair, key) are the derivatives of the ``shares``. No share falls below zero, so that
+    the mean slope over the usual change is at most the share over that change: by what the derivative exceeds this, it
+    is off at least. Keys without a usual change, as the torque, cause no warning.
+    """
+    usual = np.array([usual_tolerance(key) if ending_of(key) in USUAL else 0.0 for key in keys])
+    carried = np.nan_to_num(shares)[..., None]
+    below = np.where(carried > 0.0, usual * np.abs(np.nan_to_num(slopes)) - carried, 0.0)
+    sizes = usual * seen_size(keys, shares, slopes)
+    parts = np.divide(below, sizes, out=np.zeros(below.shape), where=sizes > 0.0)
+    worst = parts.max(axis=(0, 1, 2))
+    if (worst > TOLD).any():
+        own = int(worst.argmax())
+        place = np.unravel_index(int(parts[..., own].argmax()), shares.shape)
+        sentence = kinds.PAIR_LEAVES.sentence(
+            share=1e2 * shares[place],
+            change=-shares[place] / slopes[place][own],
+            usual=usual[own],
+            size=worst[own],
+            unit=ending_of(keys[own]),
+            key=keys[own],
+            count=np.count_nonzero(worst > TOLD),
+            keys=len(keys),
         )
         give_accuracy_warning(sentence)
 

@@ -13,7 +13,7 @@ from loaded_tca.results import key_figure_slopes
 from tests.samples.results import result
 
 pytestmark = pytest.mark.filterwarnings(  # contacts reach edges, and all is read
-    "ignore:an edge of a flank cuts the slices", "ignore:K_Hbeta follows the strip with"
+    "ignore:an edge of a flank cuts the slices", "ignore:K_Hbeta follows the strip with", "ignore:a tooth pair with"
 )
 TOLERANCES = {
     "pinion.modifications.lead_crowning_um": 2.0,

@@ -28,6 +28,7 @@ pytestmark = pytest.mark.filterwarnings(
     "ignore:derivatives of the transmission error depend",
     "ignore:derivatives of load shares depend",
     "ignore:K_Hbeta follows the strip with",
+    "ignore:a tooth pair with",
 )  # contacts reach edges, and all is read
 ROUNDING = 1e-12
 """Of numbers that are drawn, after one factor."""

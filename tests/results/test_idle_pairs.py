@@ -73,7 +73,8 @@ def test_pair_that_carries_little_leaves_within_the_tolerance():
     result = solved("straight_bevel", 5.0)
     (sentence,) = told(result, {AXIAL: 0.03})
     change = float(sentence.split("change by ")[1].split()[0])
-    shares, slopes = result.load_share[0], result.sensitivities([AXIAL]).load_share[0, ..., 0]
+    with noted_accuracy_warnings(given=False):  # within a usual change, too
+        shares, slopes = result.load_share[0], result.sensitivities([AXIAL]).load_share[0, ..., 0]
     left = -shares[shares > 0.0] / slopes[shares > 0.0]
     assert np.abs(left / change - 1.0).min() < 0.1  # two digits are told
 

@@ -186,6 +186,7 @@ def test_tooth_pair_that_carries_all_has_sensitivities_too():
 
 @pytest.mark.filterwarnings("ignore:an edge of a flank cuts the slices")
 @pytest.mark.filterwarnings("ignore:K_Hbeta follows the strip with")
+@pytest.mark.filterwarnings("ignore:a tooth pair with")
 def test_sensitivities_of_a_result_from_a_file_are_those_of_the_analysis(tmp_path):
     one = result("mesh_cycle_helical")
     one.save(tmp_path / "result.nc")

@@ -1,4 +1,4 @@
-"""Where derivatives of load shares depend on the grid, and where peak pressures have a kink."""
+"""Where derivatives of load shares depend on the grid, and where load shares and peak pressures have a kink."""
 
 import math
 
@@ -6,15 +6,22 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca import parse_scene
+from loaded_tca import parse_scene, read_scene
 from loaded_tca import warning_kinds as kinds
 from loaded_tca.errors import noted_accuracy_warnings
-from loaded_tca.results.slope_limits import usual_tolerance, warn_of_alike_peaks, warn_of_share_grids
+from loaded_tca.results.sensitivities import TORQUE
+from loaded_tca.results.slope_limits import (
+    usual_tolerance,
+    warn_of_alike_peaks,
+    warn_of_leaving_pairs,
+    warn_of_share_grids,
+)
 from loaded_tca.warning_kinds import kind_of
-from tests.samples.results import result
+from tests.samples.results import FLANKS_ALONE, SCENES, result
 from validation.invariances import COARSE, Subject, analysed
 
 IN_PLANE, CROWNING = "mounting.in_plane_deg", "pinion.modifications.lead_crowning_um"
+AXIAL = "mounting.wheel_axial_mm"
 ON_ARCS = """
 [pair]
 type = "cylindrical"
@@ -160,6 +167,49 @@ def test_what_grids_change_of_shares_is_told_where_these_are_read(part, count, m
     with noted_accuracy_warnings(given=False) as sentences:
         assert np.isfinite(slopes.load_share).any()
     assert kinds_of(sentences).count(kinds.SHARES_BY_GRIDS) == count
+
+
+def test_a_pair_that_loses_its_load_within_a_usual_change_is_told_with_the_change():
+    """Beside analyses before and beyond, and over 0.01 mm, the usual change of a position."""
+    usual = {"analysis.cells": (12, 16), "analysis.accuracy": None, "analysis.positions": 3}
+    scene = read_scene(SCENES / "straight_bevel.toml").with_changes({**FLANKS_ALONE, **usual})
+    scene = scene.with_changes({"analysis.torques_Nm": (3.0,)})
+    slopes = analysed(scene).sensitivities([AXIAL, TORQUE])
+    with noted_accuracy_warnings(given=False) as sentences:
+        slope = slopes.load_share[0, 0, 1, 0]
+    (told,) = [sentence for sentence in sentences if kind_of(sentence) is kinds.PAIR_LEAVES]
+    assert f"({AXIAL}; 1 of 2 keys)" in told
+    change, size = float(told.split("change by ")[1].split()[0]), float(told.split("at least ")[1].split("%")[0])
+    value, share = scene.mounting.wheel_axial_mm, slopes.result.load_share[0, 0, 1]
+    before, beyond, end = (
+        analysed(scene.with_changes({AXIAL: value + by})).load_share[0, 0, 1]
+        for by in (0.5 * change, 2.0 * change, 0.01)
+    )
+    assert share > before > 0.0
+    assert beyond == 0.0
+    assert_allclose((end - share) / 0.01 / slope, 1.0 - 0.01 * size, rtol=0.01)  # two digits are told
+
+
+@pytest.mark.parametrize(
+    ("key", "share", "slope", "count"),
+    [
+        (CROWNING, 0.01, 0.03, 1),
+        (CROWNING, 0.01, -0.03, 1),
+        (CROWNING, 0.029, 0.03, 0),  # the mean slope over 1 um is 3 % smaller
+        (CROWNING, 0.04, 0.03, 0),
+        (CROWNING, 0.0, 0.03, 0),  # no load that it could lose
+        (CROWNING, 0.01, math.nan, 0),
+        (CROWNING, 1e-6, 2e-6, 0),  # next to nothing by 1 um
+        (IN_PLANE, 0.01, 3.0, 1),  # by 0.01 deg
+        (IN_PLANE, 0.01, 0.03, 0),
+        (TORQUE, 0.01, 0.03, 0),
+    ],
+)
+def test_pairs_that_lose_their_load_are_told_where_a_usual_change_sees_it(key, share, slope, count):
+    shares, slopes = np.array([[[share, 1.0 - share, math.nan]]]), np.array([[[[slope], [-slope], [math.nan]]]])
+    with noted_accuracy_warnings(given=False) as sentences:
+        warn_of_leaving_pairs([key], shares, slopes)
+    assert kinds_of(sentences) == [kinds.PAIR_LEAVES] * count
 
 
 @pytest.mark.parametrize(
