@@ -195,6 +195,7 @@ def test_arrow_keys_on_sliders_move_the_map_and_all_that_is_linked(page):
     assert_allclose(page.numbers("map"), loaded_cells(0, beside, subject().peak_column[0, beside]), atol=0.03)
     page.show("panel-1")
     mark = page.run("return document.getElementById('panel-1').layout.shapes[0].x0")
+    # deg and um, also below: numbers of the page have all digits
     assert mark == pytest.approx(math.degrees(subject().pinion_angle[beside]), abs=1e-12)
     error = 1e3 * subject().wheel_base_radius * subject().transmission_error
     assert_allclose(page.trace("panel-1", 0, "y"), error[0], rtol=1e-12)
