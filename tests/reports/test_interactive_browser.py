@@ -91,16 +91,16 @@ class Browser:
 
     def point_at(self, picture, x, y, click=False):
         """Move the mouse to a place of a picture, in the units of its axes."""
-        place = self.run(
-            """const div = document.getElementById(arguments[0]), { xaxis, yaxis } = div._fullLayout;
+        find = """const div = document.getElementById(arguments[0]), { xaxis, yaxis } = div._fullLayout;
             div.scrollIntoView({ block: "center" });
             const box = div.getBoundingClientRect();
             const [x, y] = [xaxis, yaxis].map((axis, k) => axis._offset + axis.d2p(arguments[1 + k]));
-            return [box.left + x, box.top + y];""",
-            picture,
-            x,
-            y,
-        )
+            return [box.left + x, box.top + y];"""
+        place = None
+        # pictures that come into the window are drawn, which may move this one
+        while (now := self.run(find, picture, x, y)) != place:
+            place = now
+            self.settled()
         move = {"type": "mouseMoved", "x": place[0], "y": place[1]}
         self.driver.execute_cdp_cmd("Input.dispatchMouseEvent", move | {"x": place[0] - 2.0})
         self.driver.execute_cdp_cmd("Input.dispatchMouseEvent", move)
