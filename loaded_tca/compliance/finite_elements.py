@@ -114,9 +114,8 @@ class Discretisation:
         Lowest whole coordinates of each element.
     kinds : (n,) int array
         Which of q kinds each element is; elements of one kind have the same form.
-    products : (q, k d, k d) array [mm^(d - 2)]
-        Integrals of the products of the derivatives of any two shape functions, over one element of each kind, in the
-        frame of its first column.
+    corners : (q, k, d) array [mm]
+        Nodes of one element of each kind, in the frame of its first column.
     turns : (q, k) array [rad]
         From there to the frames in which the displacements of the nodes are counted.
     shares : (q, k, k) array
@@ -128,7 +127,7 @@ class Discretisation:
     elements: Indices
     lowest: Indices
     kinds: Indices
-    products: Array
+    corners: Array
     turns: Array
     shares: Array
 
@@ -148,11 +147,19 @@ class Discretisation:
 
         .. math:: K_{ia,jb} = \int \lambda\,\phi_{i,a}\phi_{j,b} + \mu\,\phi_{i,b}\phi_{j,a}
                   + \mu\,\delta_{ab} \nabla\phi_i\cdot\nabla\phi_j
+
+        The integrals over the elements are as large as the matrices, a quarter of the memory of a model of a helical
+        gear: none is kept.
+
+        Raises
+        ------
+        GeometryError
+            If an element is turned inside out.
         """
         k, d = self.elements.shape[1], self.dimension
         shear = 0.5 * material.youngs_modulus / (1.0 + material.poisson_ratio)
         lame = 2.0 * shear * material.poisson_ratio / (1.0 - 2.0 * material.poisson_ratio)
-        products = self.products.reshape(-1, k, d, k, d)
+        products = _products(_element(d), self.corners).reshape(-1, k, d, k, d)
         matrices = lame * products + shear * products.transpose(0, 1, 4, 3, 2)
         trace = shear * sum(products[:, :, a, :, a] for a in range(d))
         for a in range(d):
@@ -225,7 +232,7 @@ class Discretisation:
 def discretise(
     points: Array, lowest: Indices, turns: Array | None = None, spans: Indices | None = None
 ) -> Discretisation:
-    """Number the nodes of a logical mesh and integrate over its elements.
+    """Number the nodes of a logical mesh and find which of its elements have the same form.
 
     Parameters
     ----------
@@ -237,11 +244,6 @@ def discretise(
         About the origin or the last axis, by which the frame is turned in which displacements of a column are counted.
     spans : (n,) int array, optional
         In space: 2 where an element is twice as thick along the last axis, and starts at a multiple of 4; default: 1.
-
-    Raises
-    ------
-    GeometryError
-        If an element is turned inside out.
     """
     shape, d = points.shape[:-1], points.shape[-1]
     element = _element(d)
@@ -268,8 +270,7 @@ def discretise(
     kinds = np.array([seen.setdefault(row.tobytes(), len(seen)) for row in rounded])
     one = np.unique(kinds, return_index=True)[1]
     shares = following(hanging[one], offsets, _element(2))
-    products = _products(element, shares @ corners[one])
-    return Discretisation(number, kept_points, elements, lowest, kinds, products, onwards[one], shares)
+    return Discretisation(number, kept_points, elements, lowest, kinds, shares @ corners[one], onwards[one], shares)
 
 
 def _turn(angle: Array, dimension: int) -> Array:
@@ -294,7 +295,10 @@ def node_offsets(element: Any) -> Indices:
 
 
 def _products(element: Any, corners: Array) -> Array:
-    """Integrals (n, k d, k d) of products of derivatives, from the nodes (n, k, d) of the elements."""
+    """Integrals (n, k d, k d) of the products of the derivatives of any two shape functions [mm^(d - 2)].
+
+    Over elements with nodes at ``corners`` (n, k, d).
+    """
     from skfem.quadrature import get_quadrature
 
     places, weights = get_quadrature(element, QUADRATURE_ORDER)

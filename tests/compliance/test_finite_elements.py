@@ -132,8 +132,9 @@ def test_energy_does_not_depend_on_the_frames(rng):
 def test_an_element_inside_out_is_refused():
     points = np.stack(np.meshgrid(np.arange(7.0), np.arange(3.0), indexing="ij"), axis=-1)
     points[0, 0] = [3.0, 3.0]
+    mesh = discretise(points, np.array([[0, 0], [2, 0]]))
     with pytest.raises(GeometryError, match="inside out"):
-        discretise(points, np.array([[0, 0], [2, 0]]))
+        mesh.stiffness(STEEL)
 
 
 def strained(gear, strain, side):

@@ -278,7 +278,7 @@ def steep(helix_angle):
     return cylindrical_pair(spur_mesh(helix_angle=helix_angle)).pinion
 
 
-@pytest.mark.thorough
+@pytest.mark.quick_cases("0.5")
 @pytest.mark.parametrize("helix_angle", [0.0, 0.5])
 def test_memory_that_is_told_is_what_the_arrays_take(helix_angle):
     """Of the process, to which allocator and huge pages add by chance, the validation of root stress tells."""

@@ -9,7 +9,7 @@ from scipy.integrate import quad
 
 from loaded_tca.contact import love
 
-QUADRATURE = 1e-9
+QUADRATURE = 1e-9  # quad is asked for 1e-12, but nears a singular end
 # what the module promises where the series takes over
 SERIES = 1e-9
 

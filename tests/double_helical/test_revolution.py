@@ -57,7 +57,7 @@ def test_floating_gear_follows_an_apex_that_runs_out(floating, sign):
     # apexes lie by 1 - cos(30 deg) less far, that is 0.01
     assert_allclose(revolution.axial_motion, sign * mean, rtol=0.01)
     assert_allclose(revolution.axial_force_left, 0.0, atol=1e-9 * np.abs(revolution.axial_force).max())
-    assert_allclose(revolution.torque_share, 0.5, rtol=1e-12)
+    assert_allclose(revolution.torque_share, 0.5, rtol=1e-12)  # equal axial forces of helices alike: none seen
 
 
 def test_eccentric_halves_of_opposite_phases_shuttle_by_their_closed_form(wobbling):

@@ -137,6 +137,7 @@ def test_spread_blades_have_the_pressure_angle_and_stand_apart_by_the_slot():
         outside, inside = (settings.cutter.blade(flank) for flank in ("concave", "convex"))
         assert outside.blade_angle == inside.blade_angle == gear.pressure_angle
         assert outside.edge_radius == inside.edge_radius == 0.4
+        # radii of some 100 mm are subtracted: 6e-15 seen
         assert_allclose(outside.point_radius - inside.point_radius, point_width(gear), rtol=1e-10)
         assert_allclose(outside.point_radius + inside.point_radius, 2.0 * pair.cutter_radius, rtol=ROUNDING)
 

@@ -25,7 +25,7 @@ def gear(**changes):
 def test_pitch_cones_roll_on_each_other(first, second, shaft_angle):
     pinion, wheel = pitch_angles((first, second), shaft_angle)
     assert_allclose(pinion + wheel, shaft_angle, rtol=ROUNDING)
-    assert_allclose(math.sin(pinion) * second, math.sin(wheel) * first, rtol=1e-10)
+    assert_allclose(math.sin(pinion) * second, math.sin(wheel) * first, rtol=ROUNDING)
 
 
 def test_cones_of_the_straight_pair_39_32():

@@ -128,6 +128,7 @@ def test_without_an_offset_a_hypoid_blank_is_a_bevel_blank(taper):
     )
     for one, other in ((found.pinion, expected.pinion), (found.wheel, expected.wheel)):
         for name in ("face_angle", "root_angle", "face_apex", "root_apex", "mean_normal_thickness", "spiral_angles"):
+            # mm or rad; lengths of some 100 mm are subtracted: 4e-15 seen
             assert_allclose(getattr(one, name), getattr(other, name), rtol=1e-12, atol=1e-12, err_msg=name)
         assert_allclose(one.cone_distances, other.cone_distances)
 

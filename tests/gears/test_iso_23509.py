@@ -96,6 +96,7 @@ def test_blanks_of_random_pairs_are_those_of_the_formulas(taper):
         made += 1
         sheet = iso23509.sheet(**pair)
         for name in OF_PAIR:
+            # atol, also below: rad, angles that may be zero
             assert_allclose(getattr(blank, name), sheet[name], rtol=ROUNDING, atol=1e-12, err_msg=name)
         if sheet["virtual_contact_ratios"] is not None:
             assert_allclose(blank.virtual_contact_ratios, sheet["virtual_contact_ratios"], rtol=ROUNDING)

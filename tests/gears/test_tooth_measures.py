@@ -154,7 +154,7 @@ def test_span_and_balls_give_back_the_allowance(teeth, helix, shift, allowance, 
     except (InputError, GeometryError):
         assume(False)
     nominal = replace(one, thickness_allowance=0.0)
-    assert_allclose(allowance_of_span(nominal, span, one.span_teeth), allowance, atol=1e-10)
+    assert_allclose(allowance_of_span(nominal, span, one.span_teeth), allowance, rtol=0, atol=ROUNDING)
     assert_allclose(allowance_of_balls(nominal, balls, 2.0 * size), allowance, atol=1e-9)
     assert_allclose(allowance_of_balls(one, balls, 2.0 * size), allowance, atol=1e-9)
     if helix == 0.0 or teeth % 2 == 0 or abs(sin(helix)) > 0.01:  # opposite pins are on this face

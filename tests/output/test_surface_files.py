@@ -104,7 +104,7 @@ def test_stl_gives_triangles_and_normals_back_in_single_precision(tmp_path):
     for number in range(count):
         *numbers, attribute = struct.unpack("<12fH", content[84 + 50 * number : 134 + 50 * number])
         normal, *corners = np.reshape(numbers, (4, 3))
-        assert_allclose(corners, CORNERS[FACES[number]], rtol=1e-7, atol=1e-30)
+        assert_allclose(corners, CORNERS[FACES[number]], rtol=1e-7, atol=1e-30)  # 1e-300 is none
         assert_allclose(normal, MESH.normals[number] / np.linalg.norm(MESH.normals[number]), atol=1e-7)
         assert attribute == 0
 

@@ -511,4 +511,5 @@ def test_tables_for_dynamics_have_the_numbers_of_their_dataset(tmp_path):
         for name, found in table.items():
             values = np.asarray(expected[name])
             whole = np.broadcast_to(values[:, None] if name == "pinion_torque_Nm" else values, (2, length))
-            assert_allclose(found, whole.ravel(), rtol=1e-10, atol=1e-12, err_msg=name)
+            # half a unit of the last digit, 5e-12; atol: what is zero
+            assert_allclose(found, whole.ravel(), rtol=1e-11, atol=1e-12, err_msg=name)

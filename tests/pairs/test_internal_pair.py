@@ -76,7 +76,7 @@ def test_crowned_and_misaligned_pair_is_traced_as_by_five_equations(helix_deg):
             angle * 25 / 60,
         ]
         solution = root(_five_equations, np.add(guess, [0.01, 0.02, -0.01, 0.02, 1e-5]), (mesh, angle), tol=1e-14)
-        assert np.abs(solution.fun).max() < 1e-11
+        assert np.abs(solution.fun).max() < 1e-11  # mm, and parts of unit vectors: the equations hold
         error = (solution.x[4] - angle * 25 / 60) * mesh.ring.base_radius
         # mm; asked for are 1e-9
         assert_allclose(path.transmission_error[n] * mesh.ring.base_radius, error, rtol=0, atol=1e-10)

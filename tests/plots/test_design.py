@@ -140,6 +140,7 @@ def test_designs_under_one_torque_stand_side_by_side_above_it():
     factor = plot_before_and_after(one).axes[2]
     places = [float(line.get_xdata()[0]) for line in factor.lines]
     assert places[0] < places[1]
+    # also below: a place on either side, as far away
     assert_allclose(factor.get_xticks(), [1e-3 * TORQUES[0]], rtol=1e-12)
     assert np.mean(places) == pytest.approx(1e-3 * TORQUES[0], rel=1e-12)
     heights = [float(line.get_ydata()[0]) for line in factor.lines]

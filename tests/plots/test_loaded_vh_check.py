@@ -58,7 +58,7 @@ def test_legend_below_the_panels_tells_what_frames_and_dots_are():
         figure = plot_loaded_vh_check(study(), dict.fromkeys(range(6), one))
         (legend,) = figure.legends
         assert [text.get_text() for text in legend.texts] == ["centre of the force", *told_there]
-    assert legend.get_title().get_text() == "in each cell the tip is on top, the heel on the right"
+    assert legend.get_title().get_text() == "in each cell the tip is on top, the heel on the right; places in mm"
     figure.draw_without_rendering()
     name = figure._supxlabel.get_window_extent()
     assert legend.get_window_extent().y1 < name.y0

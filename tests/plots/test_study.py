@@ -430,6 +430,7 @@ def test_bars_of_a_key_in_equal_steps_stand_over_its_values():
     figure = plot_study_scatter_matrix(dataset(keys, {SPAN: np.arange(6.0)}, sampling="distribution"), [SPAN])
     panels = [axes for axes in figure.axes if axes.patches][:2]
     middles = [[bar.get_x() + 0.5 * bar.get_width() for bar in axes.patches] for axes in panels]
+    # also below: half a width is added to the left end
     assert_allclose(middles[0], [0.0, 5.0, 10.0], atol=1e-12)
     assert_allclose(middles[1], [2.5, 3.0], rtol=1e-12)
     assert [heights(axes) for axes in panels] == [[2, 2, 2], [3, 3]]

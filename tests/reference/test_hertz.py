@@ -92,7 +92,7 @@ def test_displacement_under_the_ellipse_is_the_parabola(k1, k2):
     a, b = contact.semi_major, contact.semi_minor
     energy = 2.0 / 5.0 * contact.load * contact.approach
     mean_square = contact.load * (small * a**2 + large * b**2) / 10.0
-    assert_allclose(contact.load * contact.approach - mean_square, 2.0 * energy, rtol=1e-10)
+    assert_allclose(contact.load * contact.approach - mean_square, 2.0 * energy, rtol=ROOT_SOLVED)
 
 
 def test_pressure_integrates_to_the_load():
@@ -120,7 +120,7 @@ def test_axis_stresses_of_a_circle_agree_with_the_closed_form():
     for zeta in (0.05, 0.48, 1.0, 3.0):
         across, along, normal = contact.axis_stresses(zeta * a, nu)
         radial = -p0 * ((1 + nu) * (1 - zeta * math.atan(1 / zeta)) - 0.5 / (1 + zeta**2))
-        assert_allclose([across, along], radial, rtol=1e-11)
+        assert_allclose([across, along], radial, rtol=1e-11)  # terms cancel as zeta grows: 9e-15 seen
         assert_allclose(normal, -p0 / (1 + zeta**2), rtol=1e-12)  # closed forms; two terms cancel inside: 2e-16 seen
 
 

@@ -56,7 +56,7 @@ def test_axis_errors_of_the_whole_wheel_move_and_turn_its_halves(scene):
         middle = mirror * (origin + sign * lever * axes[2])
         # moved across, y, it is in `parted`; along z it is moved by a cosine
         assert_allclose(half.wheel_origin[0], middle[0], rtol=1e-9)
-        assert_allclose(half.wheel_axes[2], mirror * axes[2] * sign, atol=1e-12)
+        assert_allclose(half.wheel_axes[2], mirror * axes[2] * sign, atol=1e-12)  # unit vectors
     moved = lever * axes[2][1] * math.cos(scene.mesh().working_pressure_angle)
     assert_allclose(
         np.subtract(tilted.parted, scene.parted), [moved, -moved], rtol=2e-5

@@ -67,7 +67,7 @@ def test_torsion_and_axial_force_of_a_bar() -> None:
 def test_rotation_is_counted_from_where_the_torque_enters() -> None:
     shaft = solid(pinned(0.0, RIGID), pinned(LENGTH), torque_at=120.0)
     assert_allclose(shaft.compliance([150.0])[5, 5], 30.0 / (2.0 * G * INERTIA), rtol=CLOSED_FORM)
-    assert_allclose(shaft.compliance([120.0])[5, 5], 0.0, atol=1e-30)
+    assert shaft.compliance([120.0])[5, 5] == 0.0
 
 
 def test_stepped_hollow_shaft_agrees_with_unit_loads() -> None:

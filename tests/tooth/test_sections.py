@@ -21,7 +21,7 @@ def places(rng):
 def test_point_is_the_one_whose_image_was_taken(sections, places):
     rho, z = places
     back = sections.point(sections.radius(rho, z), sections.coordinate(rho, z))
-    assert_allclose(back, (rho, z), rtol=ROUNDING, atol=1e-12)
+    assert_allclose(back, (rho, z), rtol=ROUNDING, atol=1e-12)  # atol: mm, near zero
 
 
 @pytest.mark.parametrize("sections", FAMILIES)

@@ -45,7 +45,7 @@ def test_contact_point_lies_on_both_flanks(pair, turn):
     path = trace_contact(pair, [turn * pair.pitch], warn=False)
     rho, z = path.pinion_radius, path.pinion_axial
     theta = pair.pinion.flank.theta(rho, z).value + pair.sense * path.pinion_angle
-    assert_allclose(path.point[0], [*(rho * np.cos(theta)), *(rho * np.sin(theta)), *z], atol=1e-10)
+    assert_allclose(path.point[0], [*(rho * np.cos(theta)), *(rho * np.sin(theta)), *z], atol=1e-10)  # mm
     lag, _ = transmission_error_at(pair, path.pinion_angle, rho, z)
     assert_allclose(path.transmission_error, lag, atol=ROUNDING)
     assert pair.pinion.flank.inside(rho, z, tolerance=1e-7).all()
