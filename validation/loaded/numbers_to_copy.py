@@ -285,8 +285,9 @@ def page() -> str:
     """Measure everything; the page."""
     return f"""# Numbers that are copied from a summary
 
-Written by `python -m validation.loaded.numbers_to_copy`. Machine: {machine(numpy=True)}. "Before" is revision 00c770a: free edges whose reach followed
-the box, the highest cell (or the cells beside the contact point) for the peak pressure, no K_Hbeta.
+Written by `python -m validation.loaded.numbers_to_copy`. Machine: {machine(numpy=True)}. "Before"
+is revision 00c770a: free edges whose reach followed the box, the highest cell (or the cells beside the contact point)
+for the peak pressure, no K_Hbeta.
 [Results](../guide/results.md) says what each number is.
 
 ## Load factors against misalignment
