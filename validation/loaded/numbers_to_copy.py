@@ -1,33 +1,26 @@
 """The numbers of a summary that are copied first, and what they depend on: misalignment, box, grid, defaults.
 
 Load factors of a helical pair without modifications over its misalignment; contact deformation with free edges over
-the size of the box, and the state a pitch later; peak pressure at sharp edges over the grid; key figures and times of
-the example scenes with today's defaults and the earlier ones. What an earlier revision gave stands beside them.
+the size of the box, and the state a pitch later; peak pressure at sharp edges over the grid; key figures of the example
+scenes with today's defaults and the earlier ones. What an earlier revision gave stands beside them.
 
 Run from the root of the repository: ``python -m validation.loaded.numbers_to_copy``; writes a page.
 """
 
-import os
-import statistics
-import tempfile
 import warnings
 from collections.abc import Iterator
 from functools import cache
 from typing import Any
-from unittest.mock import patch
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from loaded_tca import AccuracyWarning, analyse, read_scene, sample_separation, solve_contact, trace_contact
 from loaded_tca.arrays import Array
-from loaded_tca.compliance.influence import forget
-from loaded_tca.compliance.kept import FOLDER
 from loaded_tca.edges.free import edge_compliance
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import DoubleHelicalScene, Scene
 from validation.loaded import mesh_stiffness
-from validation.page import SCENES, SPACED, Page, formatted, machine, table, timed, write_page
+from validation.page import SCENES, SPACED, Page, formatted, machine, table, write_page
 from validation.table import Row
 
 CASE, ITSELF = "numbers to copy", "itself on other grids"
@@ -43,7 +36,6 @@ FIGURES = (
     ("face_load_factor", "K_Hbeta"),
 )
 STEP = 0.02  # of the torque, to either side: derivative of the rotation
-SECONDS, RUNS = 2.0, 3  # runs of a scene are timed until they have taken so long, or so often
 ON_GRIDS = 0.03
 # Beside a sharp end the force on a given length converges with the root of the width of the cells: the bound that the
 # page states for flanks alone.
@@ -199,39 +191,22 @@ def at_sharp_edges() -> str:
     return table(f"{head} | before: peak pressure [MPa] | highest cell [MPa]", lines, SPACED)
 
 
-def examples() -> tuple[str, str]:
-    """Key figures and times of the example scenes that keep the defaults, with the earlier ones and today's."""
-    figures, times = [], []
+def examples() -> str:
+    """Key figures of the example scenes that keep the defaults, with the earlier ones and today's."""
+    figures = []
     for file in sorted(SCENES.glob("*.toml")):
         scene = read_scene(file)
         if isinstance(scene, DoubleHelicalScene) or any(
             getattr(scene.analysis, key) != value for key, value in TODAY.items()
         ):
             continue
-        earlier, seconds = timed_anew(scene, EARLIER)
-        with tempfile.TemporaryDirectory() as models, patch.dict(os.environ, {FOLDER: models}):
-            _, first = timed_anew(scene, TODAY, runs=1)
-            today, again = timed_anew(scene, TODAY)
+        earlier, today = solved(scene, **EARLIER), solved(scene, **TODAY)
         line = [f"`{file.name}`"]
         for (key, _), style in zip(FIGURES, (".0f", ".2f", ".1f", ".2f"), strict=True):
             line += formatted(style, *(cycle.key_figures()[-1][key] for cycle in (earlier, today)))
         figures.append(line)
-        count = f"{len(today.torque)} x {len(today.pinion_angle)}"
-        times.append([f"`{file.name}`", count, *formatted(".2f", seconds, first, again)])
     head = " | ".join(f"{name}, earlier | today" for _, name in FIGURES)
-    second = "scene | torques x positions | earlier | today, models of teeth made anew | today, read from disk"
-    return table(f"scene | {head}", figures, SPACED), table(second, times, SPACED)
-
-
-def timed_anew(scene: Scene, analysis: dict[str, Any], runs: int = RUNS) -> tuple[MeshCycle, float]:
-    """Result and median time [s] of some runs, each of which takes no models of teeth but those on disk."""
-
-    def anew() -> MeshCycle:
-        forget()
-        return solved(scene, **analysis)
-
-    cycle, taken = timed(anew, runs, budget=SECONDS)
-    return cycle, statistics.median(taken)
+    return table(f"scene | {head}", figures, SPACED)
 
 
 def standard_face_load_factor(misalignment_um: float) -> float:
@@ -308,12 +283,11 @@ def _spread(values: Array) -> float:
 
 def page() -> str:
     """Measure everything; the page."""
-    with threadpool_limits(1):
-        figures, times = examples()
     return f"""# Numbers that are copied from a summary
 
-Written by `python -m validation.loaded.numbers_to_copy`. "Before" is revision 00c770a: free edges whose reach followed
-the box, the highest cell (or the cells beside the contact point) for the peak pressure, no K_Hbeta.
+Written by `python -m validation.loaded.numbers_to_copy`. Machine: {machine(numpy=True)}. "Before"
+is revision 00c770a: free edges whose reach followed the box, the highest cell (or the cells beside the contact point)
+for the peak pressure, no K_Hbeta.
 [Results](../guide/results.md) says what each number is.
 
 ## Load factors against misalignment
@@ -359,13 +333,7 @@ whole cell, the edge pressure by the part with material.
 Earlier: one tooth pair carries the load, flanks alone, no free edges. Scenes that switch one of today's defaults off
 are left out. Largest torque of each scene; lengths at the wheel's base circle.
 
-{figures}
-
-Times of an analysis [s], scene to result, one process, one thread; medians of {RUNS} runs, or of fewer where they take
-more than {SECONDS:g} s together; "made anew" is one run, which also finds the kernels of its grids.
-{machine()}.
-
-{times}
+{examples()}
 """
 
 
