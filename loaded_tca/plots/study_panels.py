@@ -26,6 +26,7 @@ from loaded_tca.plain import plain, table_cell
 from loaded_tca.plots import style
 from loaded_tca.plots.style import ACCENT, COLOURS, MARKERS, MOST_LABELS, NOT_REACHED, label_of, wrapped_label_of
 from loaded_tca.results.summary import shown_torque
+from loaded_tca.scene.keys import literal
 from loaded_tca.scene.parse import parse_scene, toml_table
 from loaded_tca.studies.ranking import (
     figure_values,
@@ -70,7 +71,7 @@ def column_of(study: xarray.Dataset, key: str) -> tuple[Array, list[str] | None]
     if values.dtype.kind in "if":
         return values.astype(float), None
     words, places = np.unique(values, return_inverse=True)
-    return places.astype(float), [str(word) for word in words]
+    return places.astype(float), [literal(word) if isinstance(word, bool) else str(word) for word in words.tolist()]
 
 
 def steps_of(study: xarray.Dataset, key: str) -> tuple[Indices, list[str]]:
@@ -132,6 +133,12 @@ def styles_of(labels: Sequence[str]) -> Iterator[tuple[str, str, str]]:
         shade = 0.15 + 0.7 * k / max(1, len(labels) - 1)
         shown = label if label and k % every == 0 else "_unlabelled"
         yield shown, to_hex(colormaps[COLOURS](shade)), MARKERS[k % len(MARKERS)]
+
+
+def told_of_legend(labels: Sequence[str]) -> list[str]:
+    """What a title says where the legend names only some of the lines."""
+    named = math.ceil(len(labels) / math.ceil(len(labels) / MOST_LABELS))
+    return [f"{len(labels)} curves, from dark to light; the legend names {named} of them"] * (named < len(labels))
 
 
 def panels_of(count: int, size: tuple[float, float]) -> tuple[Figure, list[Axes]]:

@@ -13,7 +13,9 @@ from scipy.stats import norm
 from loaded_tca import analyse, load_result
 from loaded_tca.contact import solve_contact
 from loaded_tca.errors import ConvergenceError, GeometryError, InputError
+from loaded_tca.plots import plot_study
 from loaded_tca.studies import Study, load_study, run_study
+from loaded_tca.studies.ranking import nominal_variant
 from tests.samples.studies import crowning, helical
 
 CROWNING, TEETH = "pinion.modifications.lead_crowning_um", "pinion.teeth"
@@ -51,6 +53,21 @@ def test_torques_are_a_dimension_shorter_lists_end_in_nan():
     found = run_study(Study(helical(), {"analysis.torques_Nm": [[20.0], [20.0, 40.0]]}))
     assert_array_equal(found["pinion_torque_Nm"], [[20.0, np.nan], [20.0, 40.0]])
     assert list(found["analysis.torques_Nm"].values) == ["[20.0]", "[20.0, 40.0]"]
+
+
+def ends(scene):
+    return {"ends": float(scene.analysis.free_edges)}
+
+
+def test_booleans_are_booleans_in_the_result_and_in_its_file(tmp_path):
+    out, key = tmp_path / "study.nc", "analysis.free_edges"
+    found = run_study(Study(helical(), {key: [True, False]}), out=out, figures=ends)
+    for study in (found, load_study(out)):
+        assert study[key].dtype == bool
+        assert study["ends"].values[study[key].values == True].tolist() == [[1.0]]  # noqa: E712, as users ask for it
+    assert nominal_variant(found) == 1  # without free edges, as the scene
+    (axes, *_) = plot_study(found)["study_lines_ends"].axes
+    assert [tick.get_text() for tick in axes.get_xticklabels()] == ["false", "true"]
 
 
 def failing(scene):
