@@ -26,7 +26,6 @@ from loaded_tca.plain import plain, table_cell
 from loaded_tca.plots import style
 from loaded_tca.plots.style import ACCENT, COLOURS, MARKERS, MOST_LABELS, NOT_REACHED, label_of, wrapped_label_of
 from loaded_tca.results.summary import shown_torque
-from loaded_tca.scene.keys import literal
 from loaded_tca.scene.parse import parse_scene, toml_table
 from loaded_tca.studies.ranking import (
     figure_values,
@@ -71,7 +70,7 @@ def column_of(study: xarray.Dataset, key: str) -> tuple[Array, list[str] | None]
     if values.dtype.kind in "if":
         return values.astype(float), None
     words, places = np.unique(values, return_inverse=True)
-    return places.astype(float), [literal(word) if isinstance(word, bool) else str(word) for word in words.tolist()]
+    return places.astype(float), [str(word) for word in words]
 
 
 def steps_of(study: xarray.Dataset, key: str) -> tuple[Indices, list[str]]:

@@ -16,7 +16,7 @@ import numpy as np
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, real
 from loaded_tca.errors import require
-from loaded_tca.plain import plain
+from loaded_tca.plain import plain, table_cell
 from loaded_tca.rating import rating_of
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
@@ -259,7 +259,7 @@ def shortfall_text(study: xarray.Dataset) -> Iterator[str]:
     frame, of_all_bins = shortfall(study), of_spectrum(study)
     keys = [*frame.columns[: frame.columns.get_loc("figure")]]
     for _, row in frame.iterrows():
-        group = "".join(f", {key} {plain(row[key])}" for key in keys)
+        group = "".join(f", {key} {table_cell(row[key])}" for key in keys)
         torque = row[torque_name(study)]
         under = "under the torque of each sample" if math.isnan(torque) else f"under {plain(torque)} N m"
         under = UNDER_SPECTRUM if row["figure"] in of_all_bins else under

@@ -96,6 +96,16 @@ def test_shortfall_of_each_class_stands_in_the_summary():
         shortfall(study, ["pinion.teeth"])
 
 
+@pytest.mark.parametrize("values", [["contact", "contact+tooth"], [True, False]])
+def test_shortfall_of_designs_of_words_and_booleans_stands_in_the_summary(values):
+    study = rows([1.2, 1.0, 1.0, 1.0]).assign_coords(
+        {"analysis.compliance": ("sample", [value for value in values for _ in range(2)], {"sampling": "factor"})}
+    )
+    lines = [line for line in study_summary(study).splitlines() if "below the required" in line]
+    for line, value, probability in zip(lines, values, (50, 100), strict=True):
+        assert f"under 100 N m, analysis.compliance {value}: probability {probability} %" in line
+
+
 TORQUE = "load.pinion_torque_Nm"
 
 

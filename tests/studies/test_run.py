@@ -67,7 +67,7 @@ def test_booleans_are_booleans_in_the_result_and_in_its_file(tmp_path):
         assert study["ends"].values[study[key].values == True].tolist() == [[1.0]]  # noqa: E712, as users ask for it
     assert nominal_variant(found) == 1  # without free edges, as the scene
     (axes, *_) = plot_study(found)["study_lines_ends"].axes
-    assert [tick.get_text() for tick in axes.get_xticklabels()] == ["false", "true"]
+    assert [tick.get_text() for tick in axes.get_xticklabels()] == ["False", "True"]
 
 
 def failing(scene):
