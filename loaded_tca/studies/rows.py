@@ -255,7 +255,8 @@ def dataset_of(study: Study, rows: Iterable[Row], attributes: dict[str, Any]) ->
         Dimensions sample (the number of the variant) and torque [N mm], which has a coordinate where all variants have
         the same. Over both the key figures, NaN where there are none; over the samples the varied
         keys (coordinates, lists as texts, with the attribute ``sampling``: "table", "factor" or "distribution", and of
-        the last one ``distribution``: its name and parameters), ``status``, ``reason``, ``warnings`` (lines) and ``seconds``.
+        the last one ``distribution``: its name and parameters), ``status``, ``reason``, ``warnings`` (lines) and
+        ``seconds``.
     """
     import xarray
 
