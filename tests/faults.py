@@ -4095,6 +4095,13 @@ FAULTS = (
         "    if False:",
         "studies/test_rating.py::test_safeties_under_a_load_spectrum_stand_once",
     ),
+    Fault(
+        "the compression of roots, which is negative, ranks by its least value",
+        "results/figures.py",
+        '"compression": {"largest_is_best": True}',
+        '"compression": {}',
+        "studies/test_ranking.py::test_figures_of_which_the_largest_is_best_have_their_low_quantile",
+    ),
 )
 
 
