@@ -4096,6 +4096,55 @@ FAULTS = (
         "        self.__dict__['kept'] = products\n",
         "compliance/test_root_stress.py::test_memory_that_is_told_is_what_the_arrays_take",
     ),
+    Fault(
+        "kept results of a study keep their numbers in another one",
+        "studies/kept.py",
+        "if (text := _scene_of(path)) != _text(study, int(path.stem))",
+        "if not (text := _scene_of(path))",
+        "studies/test_run.py::test_maps_are_lost_by_no_more_samples",
+    ),
+    Fault(
+        "the least share of a planet has the quantile of its best samples",
+        "stages/result.py",
+        "        largest_is_best=True,",
+        "",
+        "studies/test_ranking.py::test_figures_of_which_the_largest_is_best_have_their_low_quantile",
+    ),
+    Fault(
+        "the direction of figures of results is lost on the way to rankings",
+        "results/result.py",
+        "largest_is_best=number.largest_is_best",
+        "largest_is_best=False",
+        "studies/test_ranking.py::test_figures_of_which_the_largest_is_best_have_their_low_quantile",
+    ),
+    Fault(
+        "booleans of a study come back as words",
+        "studies/rows.py",
+        "        if len({isinstance(value, bool) for value in column}) > 1:",
+        "        if True in {isinstance(value, bool) for value in column}:",
+        "studies/test_run.py::test_booleans_are_booleans_in_the_result_and_in_its_file",
+    ),
+    Fault(
+        "a distribution without parameters is one of location 0 and scale 1",
+        "studies/study.py",
+        "    if callable(distribution):",
+        "    if False:",
+        "studies/test_study.py::test_study_that_cannot_be_is_refused",
+    ),
+    Fault(
+        "the safety of a load spectrum is that under each of its torques",
+        "studies/rating.py",
+        "    if of_spectrum(study):",
+        "    if False:",
+        "studies/test_rating.py::test_safeties_under_a_load_spectrum_stand_once",
+    ),
+    Fault(
+        "the compression of roots, which is negative, ranks by its least value",
+        "results/figures.py",
+        '"compression": {"largest_is_best": True}',
+        '"compression": {}',
+        "studies/test_ranking.py::test_figures_of_which_the_largest_is_best_have_their_low_quantile",
+    ),
 )
 
 

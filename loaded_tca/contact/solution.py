@@ -16,6 +16,7 @@ from loaded_tca.contact.levels import prolong
 from loaded_tca.contact.problem import ContactProblem, GradedProblem, HalfSpaces, Spacing
 from loaded_tca.contact.slope_jumps import growth, largest_slope_jump
 from loaded_tca.errors import ConvergenceError
+from loaded_tca.notebooks import InNotebooks
 from loaded_tca.plain import plain
 
 # Fewer cells than this across a contact leave errors above 1 % in its pressure.
@@ -220,7 +221,7 @@ class GradedSolution(Solution):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ContactSolution(Solution):
+class ContactSolution(Solution, InNotebooks):
     """Pressure and gap of two elastic half-spaces in contact on an even grid.
 
     Parameters

@@ -19,6 +19,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.double_helical.laws import axial_stiffness, between_torques, half_law
 from loaded_tca.errors import InputError, named
+from loaded_tca.notebooks import InNotebooks
 from loaded_tca.results.sensitivities import NEWTON_MILLIMETRES, TORQUE
 from loaded_tca.scene.double_helical import HALVES, DoubleHelicalScene
 from loaded_tca.scene.section import key_at
@@ -49,7 +50,7 @@ class _Half(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class DoubleHelicalSensitivities:
+class DoubleHelicalSensitivities(InNotebooks):
     """Derivatives of a double helical pair to keys of its scene, found when they are asked for.
 
     Attributes

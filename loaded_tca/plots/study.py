@@ -40,6 +40,7 @@ from loaded_tca.plots.study_panels import (
     shown_torques,
     steps_of,
     styles_of,
+    told_of_legend,
     torque_labels,
     under_torques,
     without_unit,
@@ -203,9 +204,10 @@ def plot_study_lines(study: xarray.Dataset, figure: str, over: str | None = None
         axes[0].plot([], [], "x", color="black", label=MISSING)
     legend_of(drawing, axes, key_label(study, by) if by else "")
     what = f"{without_unit(label_of(figure))} over {without_unit(label_of(over))}"
+    named = told_of_legend([label for label, _, _ in panels[0][1]])
     band = [f"median and band ({BAND}) over the other keys"] if banded else []
     under = "" if alike else under_torques(study, torques if by else range(count))
-    set_study_title(drawing, study, values, f"{what}{under}", *band)
+    set_study_title(drawing, study, values, f"{what}{under}", *band, *named)
     return drawing
 
 
@@ -239,7 +241,7 @@ def plot_study_heat_map(
     Raises
     ------
     InputError
-        If the study has no such figure, does not vary such a key, or varies one alone.
+        If the study has no such figure, does not vary such a key, varies one alone, or both axes have the same.
     """
     values, keys = figure_values(study, figure), varied_keys(study)
     largest_first = is_largest_best(figure, largest_is_best)
@@ -247,6 +249,7 @@ def plot_study_heat_map(
         raise InputError(f"heat map: needs two keys; the study varies {', '.join(keys)} alone")
     across = known_key(study, across or next(key for key in keys if key != upwards))
     upwards = known_key(study, upwards or next(key for key in keys if key != across))
+    require((across != upwards, f"across, upwards: found {across} twice; allowed two different keys"))
     (columns, x), (rows, y) = (steps_of(study, key) for key in (across, upwards))
     torques, labels = shown_torques(study), torque_labels(study)
     drawing, axes = panels_of(len(torques), (1.8 + min(7.0, 0.75 * len(x) + 1.5), 1.2 + min(6.0, 0.55 * len(y) + 1.0)))

@@ -134,6 +134,12 @@ def styles_of(labels: Sequence[str]) -> Iterator[tuple[str, str, str]]:
         yield shown, to_hex(colormaps[COLOURS](shade)), MARKERS[k % len(MARKERS)]
 
 
+def told_of_legend(labels: Sequence[str]) -> list[str]:
+    """What a title says where the legend names only some of the lines."""
+    named = math.ceil(len(labels) / math.ceil(len(labels) / MOST_LABELS))
+    return [f"{len(labels)} curves, from dark to light; the legend names {named} of them"] * (named < len(labels))
+
+
 def panels_of(count: int, size: tuple[float, float]) -> tuple[Figure, list[Axes]]:
     """A figure with panels of a size [inch], two in a row."""
     rows, columns = math.ceil(count / 2), min(count, 2)

@@ -33,6 +33,7 @@ from loaded_tca.plots.study_panels import (
     set_ticks,
     shown_torques,
     styles_of,
+    told_of_legend,
     torque_labels,
     under_torques,
     without_unit,
@@ -98,7 +99,7 @@ def plot_study_histogram(study: xarray.Dataset, figure: str, by: Sequence[str] =
         finish_panel(one, values[:, [torque]], "\n".join(title), vertical=False)
     legend_of(drawing, axes, ", ".join(map(label_of, by)))
     what = f"scatter of the {without_unit(label_of(figure))}{under_torques(study, torques)}"
-    set_study_title(drawing, study, values, what)
+    set_study_title(drawing, study, values, what, *told_of_legend([label for label, _ in groups]))
     return drawing
 
 
@@ -122,7 +123,7 @@ def plot_study_over_torque(study: xarray.Dataset, figure: str = TRANSMISSION_ERR
     """Figure over the pinion torque: median and band (5 to 95 %) of each design, and the nominal variant if there.
 
     A design is a combination of the given values of a study with distributions. Without them there is one band, and of
-    more than eight designs, too.
+    more than eight designs, too, over all of their samples, as the title says.
 
     Parameters
     ----------
@@ -143,7 +144,8 @@ def plot_study_over_torque(study: xarray.Dataset, figure: str = TRANSMISSION_ERR
     at = np.unique(torques[np.isfinite(torques)])
     drawing, (axes,) = panels_of(1, (7.5, 5.0))
     keys = design_keys(study)
-    if len(groups_of(study, keys)) > MOST_LABELS:
+    designs = len(groups_of(study, keys))
+    if designs > MOST_LABELS:
         keys = []
     groups = groups_of(study, keys)
     for (_, of), (label, colour, marker) in zip(groups, styles_of([label for label, _ in groups]), strict=True):
@@ -159,8 +161,9 @@ def plot_study_over_torque(study: xarray.Dataset, figure: str = TRANSMISSION_ERR
     axes.set(xlabel=label_of(torque_name(study)), ylabel=label_of(figure))
     finish_panel(axes, values, "")
     legend_of(drawing, [axes], ", ".join(map(label_of, keys)))
-    told = [f"of each design median and band ({BAND}) of its samples"] if keys else []
-    set_study_title(drawing, study, values, f"{without_unit(label_of(figure))} over the torque", *told)
+    all_together = f"{designs} designs and their samples together" if designs > 1 else "all variants"
+    told = f"of each design median and band ({BAND}) of its samples" if keys else f"median and band over {all_together}"
+    set_study_title(drawing, study, values, f"{without_unit(label_of(figure))} over the torque", told)
     return drawing
 
 

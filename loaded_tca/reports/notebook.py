@@ -1,4 +1,4 @@
-"""Cards of results, scenes, studies and designs in notebooks: tables of reports and summaries, and one small picture.
+"""Cards of results, scenes, studies and designs in notebooks: tables of reports and summaries, one small picture.
 
 A card is HTML that needs neither scripts nor files. Its colours are those of the page around it, dark or light.
 """
@@ -6,6 +6,7 @@ A card is HTML that needs neither scripts nor files. Its colours are those of th
 from __future__ import annotations
 
 import base64
+import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,12 +14,16 @@ from functools import partial, singledispatch
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from loaded_tca.contact import ContactSolution
 from loaded_tca.double_helical import DoubleHelicalRating, DoubleHelicalResult
+from loaded_tca.double_helical.sensitivities import DoubleHelicalSensitivities
 from loaded_tca.errors import InputError, LoadedTCAError, noted_accuracy_warnings
 from loaded_tca.flank_maps.ease_off_map import ease_off_map
 from loaded_tca.output.double_helical_overview import geometry_of_halves, pair_rows
+from loaded_tca.output.double_helical_sensitivities import HEADS, figure_slopes
 from loaded_tca.output.overview import scene_sections
 from loaded_tca.output.stage_overview import geometry_of_meshes, stage_sections
+from loaded_tca.plain import plain
 from loaded_tca.plots import (
     COMPARISON_PICTURES,
     TRIBOLOGY_PICTURES,
@@ -29,12 +34,14 @@ from loaded_tca.plots import (
     plot_pressure_map,
     plot_revolution_error,
     plot_safeties,
+    plot_solution,
     plot_stage_shares,
     plot_study,
     plot_teeth_in_mesh,
+    plot_tornado,
     png_of,
 )
-from loaded_tca.plots.style import TITLE, note_of
+from loaded_tca.plots.style import TITLE, label_of, note_of
 from loaded_tca.rating import Rating, SpectrumRating
 from loaded_tca.reports.comparison_page import differing_table, key_figure_tables
 from loaded_tca.reports.page import Table, tables_of
@@ -42,12 +49,17 @@ from loaded_tca.reports.rating_page import safeties_table
 from loaded_tca.reports.report import objectives_table, scatter_tables, values_table
 from loaded_tca.reports.result_page import key_figures_table
 from loaded_tca.results.comparison import Comparison
+from loaded_tca.results.figure import in_percent
+from loaded_tca.results.figures import FIGURES, key_figures
 from loaded_tca.results.files import STUDY
 from loaded_tca.results.gear_warnings import warn_of_gears
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.numbers import index_or_largest
 from loaded_tca.results.result import Result
 from loaded_tca.results.revolution import Revolution
+from loaded_tca.results.sensitivities import Sensitivities
+from loaded_tca.results.summary import shown
+from loaded_tca.results.tolerances import key_figure_slopes
 from loaded_tca.scene import Scene, parse_scene
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.double_helical import DoubleHelicalScene
@@ -57,10 +69,13 @@ from loaded_tca.studies import DesignResult, Study, study_summary
 from loaded_tca.studies.stage import subject_of
 from loaded_tca.studies.study import told_distribution
 from loaded_tca.tribology import Tribology
+from loaded_tca.units import unit_of
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
+
+    from loaded_tca.arrays import Array
 
 MOST_TORQUES = 4
 """With a column each; of more, the largest alone is shown."""
@@ -165,8 +180,8 @@ def card_of(subject: Any) -> Card:
 
     Parameters
     ----------
-    subject : result, rating, Scene, Stage, Study, Comparison, DesignResult, or xarray.Dataset
-        The dataset is that of a study, as :func:`loaded_tca.studies.run_study` returns it.
+    subject : result, rating, Scene, Stage, Study, Comparison, DesignResult, sensitivities, ContactSolution or dataset
+        An ``xarray.Dataset`` is that of a study, as :func:`loaded_tca.studies.run_study` returns it.
 
     Returns
     -------
@@ -191,8 +206,8 @@ def card_of(subject: Any) -> Card:
 @singledispatch
 def _card(subject: Any) -> Card:
     raise InputError(
-        f"card: found a {type(subject).__name__}; allowed a result, a rating, a scene, a stage, a study, a comparison "
-        "or a design"
+        f"card: found a {type(subject).__name__}; allowed a result, a rating, a scene, a stage, a study, a comparison, "
+        "a design, sensitivities or the solution of a contact"
     )
 
 
@@ -336,3 +351,76 @@ def _of_comparison(comparison: Comparison) -> Card:
     draw = partial(COMPARISON_PICTURES["comparison"].draw, comparison, None)
     title, about = " | ".join(comparison.results), f"a comparison with {next(iter(comparison.results))}"
     return Card(title, about, tuple(tables), sentences={"warning": warned}, draw=draw)
+
+
+@_card.register
+def _of_sensitivities(sensitivities: Sensitivities) -> Card:
+    """Changes of the key figures per unit of each key, under the largest torque."""
+    result = sensitivities.result
+    torque = int(index_or_largest(result.torque))
+    with noted_accuracy_warnings() as warned:
+        slopes = {name: values[torque] for name, values in key_figure_slopes(sensitivities).items()}
+    heads = [slope.head for name in slopes if (slope := FIGURES[name].slope)]
+    table = _slopes_table(sensitivities.keys, key_figures(result, torque), heads, slopes)
+    return _of_slopes(result.scene.title, len(result.torque), table, warned, partial(plot_tornado, sensitivities))
+
+
+@_card.register
+def _of_sensitivities_of_halves(sensitivities: DoubleHelicalSensitivities) -> Card:
+    result = sensitivities.result
+    torque = int(index_or_largest(result.torque))
+    with noted_accuracy_warnings() as warned:
+        slopes = {name: values[torque] for name, values in figure_slopes(sensitivities).items()}
+    table = _slopes_table(sensitivities.keys, result.key_figures()[torque], [*HEADS.values()], slopes)
+    return _of_slopes(result.scene.title, len(result.torque), table, warned)
+
+
+def _of_slopes(
+    title: str, torques: int, table: Table, warned: Sequence[str], draw: Callable[[], Figure] | None = None
+) -> Card:
+    largest = f", largest of {torques} torques" if torques > 1 else ""
+    sentences = {"warning": [*dict.fromkeys(warned)]}
+    return Card(
+        title or "Sensitivities", f"derivatives of key figures{largest}", (table,), sentences=sentences, draw=draw
+    )
+
+
+def _slopes_table(
+    keys: Sequence[str], figures: Mapping[str, float], heads: Sequence[str], slopes: Mapping[str, Array]
+) -> Table:
+    """Figures under a torque, and by how much a unit of each key changes them."""
+    units = (unit_of(name) for name in slopes)
+    head = (f"under {plain(figures['pinion_torque_Nm'], 6)} N m", *map(_with_unit, heads, units))
+    rows = [("this result", *(shown(figures[name], name) for name in slopes))]
+    rows += [
+        (f"per unit of {label_of(key)}", *(_slope(values[k]) for values in slopes.values()))
+        for k, key in enumerate(keys)
+    ]
+    return Table(tuple(rows), head)
+
+
+def _slope(value: float) -> str:
+    return plain(value, 3, "+") if math.isfinite(value) else "-"
+
+
+def _with_unit(label: str, unit: str) -> str:
+    return f"{label} [{unit}]" if unit else label
+
+
+@_card.register
+def _of_contact(solution: ContactSolution) -> Card:
+    """What a contact carries, how large it is, and how far off."""
+    error, cells = solution.error_estimate, "x".join(map(str, solution.pressure.shape))
+    rows = (
+        ("load [N]", plain(solution.load)),
+        ("approach from first contact [mm]", plain(solution.approach_under_load)),
+        ("peak pressure [MPa]", plain(solution.peak_pressure)),
+        ("contact area [mm^2]", plain(solution.contact_area)),
+        ("semi-minor and semi-major axis [mm]", ", ".join(map(plain, solution.semi_axes))),
+        ("cells under pressure along the two axes", ", ".join(map(str, solution.cells_across))),
+        ("estimated error of the peak pressure", in_percent(error.peak_pressure)),
+        ("estimated error of the approach", in_percent(error.approach)),
+    )
+    about = f"a contact of two half-spaces on {cells} cells"
+    warned = {"note": (solution.status.value,), "warning": solution.accuracy_warnings}
+    return Card("Contact", about, (Table(rows),), sentences=warned, draw=partial(plot_solution, solution))

@@ -40,6 +40,7 @@ from loaded_tca.studies.design_figures import FIGURES
 from loaded_tca.studies.ranking import (
     MAIN,
     PERCENTILES,
+    blocks_of,
     design_keys,
     figure_values,
     is_largest_best,
@@ -51,7 +52,7 @@ from loaded_tca.studies.ranking import (
     rank_variants,
     varied_keys,
 )
-from loaded_tca.studies.rating import CLASS, shortfall
+from loaded_tca.studies.rating import CLASS, UNDER_SPECTRUM, shortfall
 from loaded_tca.studies.rating import FIGURES as SAFETIES
 from loaded_tca.studies.stage import subject_of, torque_name
 from loaded_tca.threads import one_thread
@@ -90,9 +91,9 @@ def write_html_report(
     date : str, optional
         Of the analysis; default: of results its own, of a study or design today's.
     rank_by : str, optional
-        Figure that ranks the variants of a study; default: the peak-to-peak transmission error. The least is best, of
-        safeties, lives and films the largest. Where the study has distributions, combinations of its other values are
-        ranked, by the 95 % quantile over their samples, or the 5 % quantile where the largest is best.
+        Figure that ranks the variants of a study; default: the peak-to-peak transmission error. The best is first, as
+        :func:`loaded_tca.studies.rank_variants` has it. Where the study has distributions, combinations of its other
+        values are ranked, by the 95 % quantile over their samples, or the 5 % quantile where the largest is best.
     axes : (str, str), optional
         Keys of a study that its heat maps have to the right and upwards, as :func:`loaded_tca.plots.plot_study` takes
         them; default: the first two with given values.
@@ -313,20 +314,20 @@ def _varied(study: xarray.Dataset) -> Table:
 
 
 def scatter_tables(study: xarray.Dataset, by: str | None) -> Iterator[Table]:
-    """Percentiles of the main figures over the variants, a table for each torque."""
+    """Percentiles of the main figures over the variants, a table for each torque and for a load spectrum."""
     if not main_figures(study):
         return
     names = dict.fromkeys([*([by] if by else []), *main_figures(study), *(name for name in MAIN if name in study)])
-    torques = study["torque"].values if "torque" in study.coords else [None] * study.sizes["torque"]
-    for k, torque in enumerate(torques):
+    for under, k, some in blocks_of(study, [*names]):
         rows = []
-        for name in names:
+        for name in some:
             values = figure_values(study, name)[:, k]
             values = values[np.isfinite(values)]
             if values.size:
                 at = np.percentile(values, [*PERCENTILES.values()]).tolist()
                 rows.append((label_of(name), *(shown(value, name) for value in at)))
-        under = "" if torque is None else f"under {shown_torque(torque)}"
+        if under != UNDER_SPECTRUM and "torque" in study.coords:
+            under = f"under {shown_torque(study['torque'].values[k])}"
         if rows:
             yield Table(tuple(rows), (under, *PERCENTILES))
 

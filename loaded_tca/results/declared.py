@@ -68,6 +68,8 @@ class Number(_Part):
         How many times the number the tables have: diameters, full widths.
     label : str
         Line of the summary, of a number under each torque alone, which is a key figure then.
+    largest_is_best : bool
+        As of a :class:`loaded_tca.results.figure.Figure`, which a number with a label is.
     asked : Asked, optional
         When a result has it; default: always.
     needs : frozenset of str
@@ -79,6 +81,7 @@ class Number(_Part):
     at_base_circle: bool
     times: float
     label: str
+    largest_is_best: bool
     asked: Asked | None
     needs: frozenset[str]
 
@@ -94,12 +97,14 @@ class Number(_Part):
         at_base_circle: bool = False,
         times: float = 1.0,
         label: str = "",
+        largest_is_best: bool = False,
         asked: Asked | None = None,
     ) -> Number:
         """Declare a number by its dimensions, unit and long name."""
         number = super().__new__(cls, dims, unit, text)
         number.column, number.columns, number.at_base_circle = column, columns, at_base_circle
         number.times, number.label, number.asked, number.needs = times, label, asked, needs
+        number.largest_is_best = largest_is_best
         return number
 
     def changed(self, **changes: Any) -> Number:

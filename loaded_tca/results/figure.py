@@ -210,6 +210,8 @@ class Figure:
         Its label on axes; default: its name in words.
     is_compared, is_load_case, is_scattered : bool
         Whether it stands in comparisons, in the table of the load cases of a report, and in the summary of a study.
+    largest_is_best : bool
+        Whether of variants of a study that with the largest value is best, as of a life; default: that with the least.
     rank : int, optional
         Place among the figures by which variants of a study are compared; the first one ranks them.
     slope : Slope, optional
@@ -230,6 +232,7 @@ class Figure:
     is_compared: bool = False
     is_load_case: bool = False
     is_scattered: bool = False
+    largest_is_best: bool = False
     rank: int | None = None
     slope: Slope | None = None
     is_part: bool = False

@@ -101,7 +101,7 @@ def _of_gear(gear: int) -> dict[str, Figure]:
             "rank": 4 + gear,
             "slope": Slope(6 + gear, f"{name} tension", slope_of_root_tension(gear)),
         },
-        "compression": {},
+        "compression": {"largest_is_best": True},
     }
     figures: dict[str, dict[str, Any]] = {
         f"{name}_rim_thickness_factor_iso_6336": {"axis": f"{name} rim thickness factor Y_B, ISO 6336"}
@@ -111,7 +111,8 @@ def _of_gear(gear: int) -> dict[str, Figure]:
         texts |= {"label": f"root {extreme} of the {name}", "is_compared": True, "accuracy": compared}
         places = f"pinion_angle_at_{figure}_deg", f"{figure}_angle_deg", f"{figure}_axial_mm", f"{figure}_on_back"
         figures |= {f"{figure}_MPa": texts, **{place: {} for place in places}}
-    others = "root_stress_ratio", "nominal_root_stress_iso_6336_MPa", *(f"{what}_factor_iso_6336" for what in FACTORS)
+    others = "nominal_root_stress_iso_6336_MPa", *(f"{what}_factor_iso_6336" for what in FACTORS)
+    figures[f"{name}_root_stress_ratio"] = {"largest_is_best": True}
     figures |= {f"{name}_{other}": {} for other in (*others, "root_stress_iso_6336_MPa")}
     return {entry: _of_roots(entry, **texts) for entry, texts in figures.items()}
 
@@ -136,6 +137,7 @@ def _of_bearings(gear: str) -> dict[str, Figure]:
             of=lambda under: reduced(np.min, getattr(under, life)),
             label=f"bearing life, {gear}",
             is_compared=True,
+            largest_is_best=True,
             needs=life,
             accuracy=saying("basic reference rating life, ISO/TS 16281: 90 % reliability, no lubrication"),
         ),

@@ -41,7 +41,12 @@ if TYPE_CHECKING:
 def figures_of(numbers: Mapping[str, Number]) -> dict[str, Figure]:
     """Key figures that numbers under a torque are by their label, by the heads of their columns."""
     return {
-        head: Figure(of=partial(_number, name, number.factor(head)), label=number.label, needs=name)
+        head: Figure(
+            of=partial(_number, name, number.factor(head)),
+            label=number.label,
+            largest_is_best=number.largest_is_best,
+            needs=name,
+        )
         for name, number in numbers.items()
         if number.label
         for head in (number.head(name),)
@@ -87,12 +92,17 @@ class Result(InNotebooks, Numbers, ABC):
         """Title of what was analysed."""
         return str(getattr(self, self.SUBJECT).title)
 
+    @classmethod
+    def declared_figures(cls) -> dict[str, Figure]:
+        """Key figures of this kind of result, by their names, which end in their unit."""
+        declared = {**figures_of(cls.NUMBERS), **cls.FIGURES}
+        return {name: declared[name] for name in dict.fromkeys((*cls.FIGURES, *declared))}
+
     @property
     def figures(self) -> dict[str, Figure]:
         """Key figures that the result has, by their names, which end in their unit."""
-        declared = {**figures_of(self.NUMBERS), **self.FIGURES}
-        names = dict.fromkeys((*self.FIGURES, *declared))
-        return {name: declared[name] for name in names if not (needs := declared[name].needs) or self.has(needs)}
+        declared = self.declared_figures()
+        return {name: figure for name, figure in declared.items() if not figure.needs or self.has(figure.needs)}
 
     def key_figures(self) -> tuple[dict[str, float], ...]:
         """Return the figures for each torque, by names that end in their unit; NaN: not known."""

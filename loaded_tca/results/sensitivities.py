@@ -13,6 +13,7 @@ import numpy as np
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array, Indices, Mask, real
 from loaded_tca.errors import require
+from loaded_tca.notebooks import InNotebooks
 from loaded_tca.results.face_slopes import (
     LITTLE,
     common_face_motions,
@@ -65,7 +66,7 @@ FEW = 200
 
 
 @dataclass(frozen=True, eq=False)
-class Sensitivities:
+class Sensitivities(InNotebooks):
     """Derivatives of a result with respect to keys of its scene; NaN where nothing is in contact or nothing is loaded.
 
     Found when they are asked for: the transmission error costs one linear problem for each state, a torque and

@@ -281,6 +281,14 @@ def made(section: type[SectionType], values: Mapping[str, Any]) -> SectionType:
     return section(**{attribute: values[name] for name, (attribute, _) in entries(section).items()})
 
 
+def _key_written(section: type[Section], name: str) -> str:
+    """Key of a section that a name of drawings writes; nothing where it writes none."""
+    if name in section.equivalents:
+        return section.equivalents[name].key
+    writing = writing_of(name, keys_of(section), {})
+    return "" if writing is None else writing.key
+
+
 def _unknown(
     section: type[Section], value: Mapping[str, Any], place: str, whole: type[Section] | None = None
 ) -> Iterator[str]:
@@ -324,6 +332,10 @@ def key_at(section: type[Section], path: str, place: str = "") -> Key:
     """
     name, _, rest = path.partition(".")
     if name not in entries(section):
+        if not rest and (key := _key_written(section, name)):
+            raise InputError(
+                f"{place}{name}: a name of drawings, whose values are not converted here; allowed {place}{key}"
+            )
         raise InputError(_unknown(section, {name: None}, place))
     entry = entries(section)[name][1]
     if isinstance(entry, Subsection):

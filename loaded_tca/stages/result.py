@@ -121,7 +121,9 @@ def _of_mesh(mesh: str) -> dict[str, Figure]:
 FIGURES: dict[str, Figure] = {
     **figures_of({name: STAGE_NUMBERS[name] for name in ("torque", "mesh_load_factor")}),
     "least_planet_share": Figure(
-        of=lambda under: float(under.planet_share.min()), label="least share of a planet in the torque"
+        of=lambda under: float(under.planet_share.min()),
+        label="least share of a planet in the torque",
+        largest_is_best=True,
     ),
     "largest_planet_share": Figure(
         of=lambda under: float(under.planet_share.max()), label="largest share of a planet in the torque"

@@ -56,6 +56,8 @@ __all__ = ["DesignModel", "DesignResult", "Evaluation", "load_design", "optimise
 MOST_ITERATIONS = 50
 ACCURACY = 1e-5
 """Of the objective, relative, at which SLSQP stops. At 1e-3 it gives up where a short step gains little, half way."""
+ROUNDING = 1e-12
+"""Part of the range of a key from its bounds within which SLSQP, which means the bound, leaves its rounding."""
 MOST_BASES, SCATTER = 2, 0.02
 """How often a search on supports goes on from its optimum in a model based there, which differs in its transmission
 error by more than so much [um]: two grids alone differ by as much on soft shafts."""
@@ -220,7 +222,9 @@ class _Search:
         )
 
     def _evaluated(self, point: Array) -> Evaluation:
-        x = np.clip(self._low + point * self._range, *self._model.bounds.T)
+        low, high = self._model.bounds.T
+        x = np.where(point >= 1.0 - ROUNDING, high, low + point * self._range)
+        x = np.where(point <= ROUNDING, low, np.clip(x, low, high))
         if self._last is None or not np.array_equal(self._last.x, x):
             self._last = self._model.evaluate(x)
             value, _ = self._objective.of(self._last.figure(self._objective.figure))

@@ -155,7 +155,9 @@ class DesignResult(InNotebooks):
 
     @property
     def advice(self) -> str:
-        """What to do about it."""
+        """What to do about what is unconfirmed; nothing if the analysis confirms the design."""
+        if not self.unconfirmed:
+            return ""
         figures = {limit.figure for limit in self._exceeded()}
         return f"{MORE_CELLS}; {AT_ENDS}" if figures & {"pressure_MPa", "edge_pressure_norm_MPa"} else MORE_CELLS
 

@@ -8,28 +8,32 @@ These say how many variants there are, what became of them, and how far the main
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loaded_tca.analysis import analyse
 from loaded_tca.arrays import Array, index_checks
+from loaded_tca.double_helical import DoubleHelicalResult
 from loaded_tca.errors import InputError, require
 from loaded_tca.plain import plain
-from loaded_tca.results import MeshCycle
+from loaded_tca.results import MeshCycle, Revolution
 from loaded_tca.results.figure import labelled
 from loaded_tca.results.figures import FIGURES, declared
+from loaded_tca.results.result import Result
 from loaded_tca.results.warnings import without_place
 from loaded_tca.scene import Scene
 from loaded_tca.scene.double_helical import DoubleHelicalScene
 from loaded_tca.scene.keys import did_you_mean, nearest
+from loaded_tca.stages import StageResult
 from loaded_tca.studies.double_helical import halves_figures
 from loaded_tca.studies.other_figures import tribology_figures
 from loaded_tca.studies.rating import FIGURES as SAFETIES
 from loaded_tca.studies.rating import MAIN_FIGURES as MAIN_SAFETIES
-from loaded_tca.studies.rating import REQUIRED, rating_figures, shortfall_text
+from loaded_tca.studies.rating import REQUIRED, UNDER_SPECTRUM, of_spectrum, rating_figures, shortfall_text
 from loaded_tca.studies.stage import TORQUES, nominal_of, subject_of, torque_name
+from loaded_tca.tribology import Tribology
 from loaded_tca.units import ending_of, without_unit
 
 if TYPE_CHECKING:
@@ -41,8 +45,14 @@ MAIN_FIGURES = (
     *MAIN_SAFETIES,
 )
 """Figures by which variants are compared unless others are asked for; the first one ranks them."""
-OF_OIL = "efficiency", "scuffing_safety", "micropitting_safety", "least_film_ratio", "least_film_thickness_um"
-LARGEST_IS_BEST = frozenset((*SAFETIES, *OF_OIL))
+KINDS: tuple[type[Result], ...] = MeshCycle, Revolution, StageResult, DoubleHelicalResult, Tribology
+"""Of results whose figures studies take."""
+LARGEST_IS_BEST = frozenset(
+    (
+        *SAFETIES,
+        *(name for kind in KINDS for name, figure in kind.declared_figures().items() if figure.largest_is_best),
+    )
+)
 """Figures of which the largest is best; of all others the least."""
 QUANTILE = 0.95
 """Of a figure over the samples of a combination."""
@@ -121,7 +131,7 @@ def design_keys(study: xarray.Dataset) -> list[str]:
 
 
 def is_largest_best(figure: str, asked: bool | None = None) -> bool:
-    """Whether the largest value of a figure is the best one: as ``asked``, or that of safeties, lives and films."""
+    """Whether the largest value of a figure is the best one: as ``asked``, or as the figure declares."""
     return figure in LARGEST_IS_BEST if asked is None else asked
 
 
@@ -230,8 +240,8 @@ def rank_variants(
         Index of the torque whose figures are compared. Default: of each figure the worst value over the torques, which
         is its largest, or its least where the largest is best.
     largest_is_best : bool, optional
-        Whether the largest value is the best one, of all figures. Default: of safeties, lives, films and the
-        efficiency.
+        Whether the largest value is the best one, of all figures. Default: of safeties, lives, films, the efficiency,
+        the least share of a planet, and of stress ratios and compressions, which are negative, at roots.
 
     Returns
     -------
@@ -372,32 +382,41 @@ def _label_of(name: str) -> str:
 
 
 def _table(study: xarray.Dataset) -> Iterator[str]:
-    """Percentiles of the main figures over the variants, one line for each torque."""
+    """Percentiles of the main figures over the variants under each torque, and of those of a load spectrum."""
     names = [name for name in MAIN if name in study] or main_figures(study)
     labels = {name: _label_of(name) for name in names}
     shown = {name: labelled(name, label) for name, label in labels.items() if np.isfinite(study[name]).any()}
     if not shown:
         return
-    name = torque_name(study)
-    torques = study[name].values if name in study else np.zeros((1, 1))
-    for torque in range(study.sizes["torque"]):
-        of_variants = torques[np.isfinite(torques[:, torque]), torque]
-        same = of_variants.size and np.ptp(of_variants) == 0.0 and study.sizes["torque"] > 1
-        head = (
-            f"under {plain(of_variants[0], 6)} N m"
-            if same
-            else f"torque {torque + 1}"
-            if study.sizes["torque"] > 1
-            else ""
-        )
-        width = max(len(label) for label in (*shown.values(), head))
+    blocks = blocks_of(study, [*shown])
+    width = max(len(word) for word in (*shown.values(), *(head for head, _, _ in blocks)))
+    for head, torque, lines in blocks:
         yield f"{head:<{width}}" + "".join(f"{word:>11}" for word in PERCENTILES)
-        for name, label in shown.items():
+        for name in lines:
             values = study[name].values[:, torque]
             values = values[np.isfinite(values)]
             if values.size:
                 at = np.percentile(values, [*PERCENTILES.values()])
-                yield f"{label:<{width}}" + "".join(f"{plain(value):>11}" for value in at)
+                yield f"{shown[name]:<{width}}" + "".join(f"{plain(value):>11}" for value in at)
+
+
+def blocks_of(study: xarray.Dataset, names: Sequence[str]) -> list[tuple[str, int, list[str]]]:
+    """Head, index of a torque and figures of each part of a table: for each torque, last for a load spectrum."""
+    of_all_bins = of_spectrum(study)
+    under_each = [name for name in names if name not in of_all_bins]
+    blocks = [(_under(study, torque), torque, under_each) for torque in range(study.sizes["torque"])]
+    blocks.append((UNDER_SPECTRUM, 0, [name for name in names if name in of_all_bins]))
+    return [(head, torque, some) for head, torque, some in blocks if some]
+
+
+def _under(study: xarray.Dataset, torque: int) -> str:
+    """Of several torques the one that all variants have, or its number."""
+    name, count = torque_name(study), study.sizes["torque"]
+    torques = study[name].values[:, torque] if name in study else np.zeros(1)
+    known = torques[np.isfinite(torques)]
+    if count == 1:
+        return ""
+    return f"under {plain(known[0], 6)} N m" if known.size and np.ptp(known) == 0.0 else f"torque {torque + 1}"
 
 
 def _reasons(study: xarray.Dataset) -> Iterator[str]:

@@ -16,7 +16,7 @@ import numpy as np
 from loaded_tca.arguments import checked
 from loaded_tca.arrays import Array, real
 from loaded_tca.errors import require
-from loaded_tca.plain import plain
+from loaded_tca.plain import plain, table_cell
 from loaded_tca.rating import rating_of
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
@@ -47,6 +47,9 @@ REQUIRED = {
     for name in names
 }
 """Safety -> key of [rating] that has what is required."""
+SPECTRA = frozenset(("load.case", "load.spectrum"))
+"""Keys of a load spectrum."""
+UNDER_SPECTRUM = "under the load spectrum"
 CONFIDENCE = 0.95
 CLASS = "rating.tolerance_class"
 
@@ -148,6 +151,19 @@ def safeties_of(study: xarray.Dataset) -> list[str]:
     return [name for name in REQUIRED if name in study.data_vars and np.isfinite(study[name].values).any()]
 
 
+def of_spectrum(study: xarray.Dataset) -> frozenset[str]:
+    """Figures of a study that are of a load spectrum, under each torque the same; none without a spectrum."""
+    from loaded_tca.studies.ranking import varied_keys
+    from loaded_tca.studies.stage import subject_of
+
+    names = frozenset(FIGURES).intersection(map(str, study.data_vars))
+    if not names:
+        return names
+    load = subject_of(study).load
+    given = load.case is not None or load.spectrum is not None or not SPECTRA.isdisjoint(varied_keys(study))
+    return names if given else frozenset()
+
+
 def required_safeties(study: xarray.Dataset, scene: Scene, name: str) -> Array:
     """What is required of a safety in each variant of a study (samples,)."""
     key = f"rating.{REQUIRED[name]}"
@@ -184,7 +200,8 @@ def shortfall(study: xarray.Dataset, by: Sequence[str] | None = None) -> pandas.
         A row for each safety, torque and group: keys of the groups, ``figure``, ``pinion_torque_Nm``, ``samples`` (with
         that figure), ``below``, ``probability``, ``low`` and ``high`` (its bounds, 95 % confidence), ``median`` and
         ``least`` of the safety, and ``required`` (of the first sample). The torque is NaN where that of the samples
-        differs. No rows of a study without safeties.
+        differs, and under a load spectrum, whose bins all count together in one row. No rows of a study without
+        safeties.
 
     Raises
     ------
@@ -207,6 +224,9 @@ def shortfall(study: xarray.Dataset, by: Sequence[str] | None = None) -> pandas.
     columns = [*head, "samples", "below", "probability", "low", "high", "median", "least", "required"]
     rows = []
     scene = subject_of(study) if names else None
+    torques = study[torque_name(study)].values if names else np.empty((0, 0))
+    if of_spectrum(study):
+        torques = np.full((len(torques), 1), np.nan)
     groups = dict.fromkeys(zip(*(study[key].values.tolist() for key in keys), strict=True)) if keys else {(): None}
     for name in names:
         assert isinstance(scene, Scene)
@@ -215,7 +235,7 @@ def shortfall(study: xarray.Dataset, by: Sequence[str] | None = None) -> pandas.
             of_group = np.ones(len(required), dtype=bool)
             for key, value in zip(keys, group, strict=True):
                 of_group &= study[key].values == value
-            for torque, moments in enumerate(study[torque_name(study)].values.T):
+            for torque, moments in enumerate(torques.T):
                 known = of_group & np.isfinite(values[:, torque])
                 if known.any():
                     safeties, moment = values[known, torque], _alike(moments[known])
@@ -236,14 +256,15 @@ def shortfall_text(study: xarray.Dataset) -> Iterator[str]:
 
     if not (is_sampled(study) or CLASS in varied_keys(study)):
         return
-    frame = shortfall(study)
+    frame, of_all_bins = shortfall(study), of_spectrum(study)
     keys = [*frame.columns[: frame.columns.get_loc("figure")]]
     for _, row in frame.iterrows():
-        group = "".join(f", {key} {plain(row[key])}" for key in keys)
+        group = "".join(f", {key} {table_cell(row[key])}" for key in keys)
         torque = row[torque_name(study)]
-        under = "the torque of each sample" if math.isnan(torque) else f"{plain(torque)} N m"
+        under = "under the torque of each sample" if math.isnan(torque) else f"under {plain(torque)} N m"
+        under = UNDER_SPECTRUM if row["figure"] in of_all_bins else under
         yield (
-            f"{FIGURES[row['figure']]} below the required {plain(row['required'])} under {under}{group}: "
+            f"{FIGURES[row['figure']]} below the required {plain(row['required'])} {under}{group}: "
             f"probability {plain(100.0 * row['probability'], 3)} % "
             f"({row['below']} of {row['samples']} samples; {100.0 * row['low']:.1f} to {100.0 * row['high']:.1f} % "
             f"with {plain(100.0 * CONFIDENCE, 6)} % confidence), median {plain(row['median'])}"

@@ -254,8 +254,9 @@ def dataset_of(study: Study, rows: Iterable[Row], attributes: dict[str, Any]) ->
     xarray.Dataset
         Dimensions sample (the number of the variant) and torque [N mm], which has a coordinate where all variants have
         the same. Over both the key figures, NaN where there are none; over the samples the varied
-        keys (coordinates, with the attribute ``sampling``: "table", "factor" or "distribution", and of the last one
-        ``distribution``: its name and parameters), ``status``, ``reason``, ``warnings`` (lines) and ``seconds``.
+        keys (coordinates, lists as texts, with the attribute ``sampling``: "table", "factor" or "distribution", and of
+        the last one ``distribution``: its name and parameters), ``status``, ``reason``, ``warnings`` (lines) and
+        ``seconds``.
     """
     import xarray
 
@@ -296,12 +297,14 @@ def _widened(array: Array, torques: int) -> Array:
 
 
 def _varied(study: Study) -> dict[str, tuple[str, Array, dict[str, str]]]:
-    """Values of the varied keys over the samples; lists and booleans as a scene file writes them."""
+    """Values of the varied keys over the samples; lists, and booleans beside other values, as scene files have them."""
     columns: dict[str, list[Any]] = {key: [] for key in study.keys}
     for variant in range(len(study)):
         for key, value in study.changes(variant).items():
-            plain = isinstance(value, int | float | str) and not isinstance(value, bool)
-            columns[key].append(value if plain else literal(value))
+            columns[key].append(value if isinstance(value, int | float | str) else literal(value))
+    for column in columns.values():
+        if len({isinstance(value, bool) for value in column}) > 1:
+            column[:] = [literal(value) if isinstance(value, bool) else value for value in column]
     ways = [("table", study.table), ("factor", study.factors), ("distribution", study.distributions)]
     sampling = {key: {"sampling": way} for way, keys in ways for key in keys}
     for key, distribution in study.distributions.items():

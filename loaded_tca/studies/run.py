@@ -31,17 +31,16 @@ from loaded_tca.errors import (
     ConvergenceError,
     DamageWarning,
     ExecutorError,
-    InputError,
     LoadedTCAError,
     noted_accuracy_warnings,
     require,
 )
-from loaded_tca.input_files import is_place
-from loaded_tca.results.files import FilePath, make_directory, read_dataset, remove, replace_file, write_dataset
+from loaded_tca.results.files import FilePath, write_dataset
 from loaded_tca.scene import Scene
 from loaded_tca.scene.double_helical import DoubleHelicalScene
 from loaded_tca.stages import Stage
 from loaded_tca.studies.double_helical import halves_figures
+from loaded_tca.studies.kept import keep, kept_file, renumber
 from loaded_tca.studies.ranking import failure_of_all, figures_of
 from loaded_tca.studies.ranking import figures as key_figures
 from loaded_tca.studies.rows import Row, Rows, dataset_of, problem_of_figures
@@ -91,7 +90,9 @@ def run_study(
         :func:`loaded_tca.studies.stage_figures`, of double helical pairs :func:`loaded_tca.studies.halves_figures`.
     keep_maps : collection of int
         Variants of which the whole result is kept, pressure maps included, if they are ok:
-        ``<name>_maps/<variant>.nc`` beside ``out``, to be read by :func:`loaded_tca.load_result`.
+        ``<name>_maps/<variant>.nc`` beside ``out``, to be read by :func:`loaded_tca.load_result`. When a study with
+        more samples or other values has the same ``out``, kept results move to the numbers that their variants have
+        there; those of no variant of it to ``<name>_maps/others/``.
 
     Returns
     -------
@@ -111,6 +112,7 @@ def run_study(
     DamageWarning
         Which rows beside ``out`` cannot be used, and why, if anything is missing: their variants are analysed again.
     UserWarning
+        If kept results are of no variant of the study: how many, and where they are.
         If no variant is ok: how many have which status, and the reason of the first.
 
     Examples
@@ -132,11 +134,12 @@ def run_study(
         rows = stack.enter_context(Rows(place.with_suffix(".rows.jsonl")))
         stack.enter_context(_told_how_to_go_on(rows, out))
         maps = place.with_name(f"{place.stem}_maps")
-        _remove_outdated(maps, study)
+        if left := renumber(maps, study):
+            warnings.warn(f"study: {left}", UserWarning, stacklevel=2)
         kept = {
             variant
             for variant, digest in enumerate(digests)
-            if digest in rows and (variant not in with_maps or _map_of(maps, variant).exists())
+            if digest in rows and (variant not in with_maps or kept_file(maps, variant).exists())
         }
         missing: dict[str, list[int]] = {}  # variants that change the same are analysed once
         for variant in sorted(set(range(len(study))) - kept):
@@ -154,7 +157,7 @@ def run_study(
             for batch in batches:
                 rows.append([row for row, _ in batch])
                 for row, whole in batch:
-                    _keep(maps, with_maps.intersection(missing[row["digest"]]), whole)
+                    keep(maps, with_maps.intersection(missing[row["digest"]]), whole)
                 tally.add(row for row, _ in batch for _ in missing[row["digest"]])
         text = "stage_toml" if isinstance(study.scene, Stage) else "scene_toml"
         attributes = {text: study.scene.to_toml(), "version": version("loaded_tca"), "seed": study.seed}
@@ -326,32 +329,6 @@ def _status_of(error: Exception) -> str:
     if isinstance(error, ConvergenceError):
         return "not converged"
     return "refused" if isinstance(error, LoadedTCAError) else "fault"
-
-
-def _remove_outdated(maps: Path, study: Study) -> None:
-    """Remove kept results of variants that the study does not have any more, or has under another number."""
-    for path in maps.glob("*.nc"):
-        variant = int(path.stem) if is_place(path.stem) else len(study)
-        try:
-            scene = study.scene.with_changes(study.changes(variant)).to_toml() if variant < len(study) else ""
-            outdated = read_dataset(path).attrs.get("scene_toml") != scene
-        except InputError:
-            outdated = True
-        if outdated:
-            remove(path)
-
-
-def _map_of(maps: Path, variant: int) -> Path:
-    return maps / f"{variant}.nc"
-
-
-def _keep(maps: Path, variants: Collection[int], content: bytes | None) -> None:
-    """Write the whole result of variants that change the same, if it is kept."""
-    if content is None:
-        return
-    make_directory(maps)
-    for variant in variants:
-        replace_file(_map_of(maps, variant), content)
 
 
 @contextmanager

@@ -283,7 +283,10 @@ def _problems_of_distribution(key: str, known: Key | None, distribution: Any) ->
     except Exception:  # of whatever it is, or of parameters that scipy.stats stumbles over
         yield f"{key}: found {shown(distribution)}; allowed a frozen distribution of scipy.stats, as norm(0.0, 5.0)"
         return
-    if not math.isfinite(middle):
+    if callable(distribution):  # what makes frozen ones, with parameters that nobody gave
+        name = getattr(distribution, "name", None) or getattr(distribution, "__name__", type(distribution).__name__)
+        yield f"{key}: found the distribution {name} without parameters; allowed a frozen one, as norm(0.0, 5.0)"
+    elif not math.isfinite(middle):
         yield f"{key}: the distribution has no median: a parameter is out of its range, as a scale below 0"
     elif known is not None and isinstance(known.kind, Whole) and not middle.is_integer():
         yield f"{key}: the distribution gives {plain(middle, 6)}; allowed are whole numbers"

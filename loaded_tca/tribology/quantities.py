@@ -58,6 +58,7 @@ QUANTITIES: dict[str, Number] = {
         "1 minus the friction power over the power at the pinion",
         OF_PITCH | FRICTION,
         label="efficiency of the mesh",
+        largest_is_best=True,
     ),
     "bulk_temperature": Number(TORQUE, "°C", "bulk temperature of the teeth", BULK, label="bulk temperature"),
     "largest_flash_temperature": Number(
@@ -72,10 +73,13 @@ QUANTITIES: dict[str, Number] = {
         "safety against scuffing by the contact temperature, S_B",
         HOT | {"lubricant", "load_stage"},
         label="safety against scuffing S_B",
+        largest_is_best=True,
     ),
-    "least_film_thickness": Number(TORQUE, "um", "least film thickness", FILM, label="least film thickness"),
+    "least_film_thickness": Number(
+        TORQUE, "um", "least film thickness", FILM, label="least film thickness", largest_is_best=True
+    ),
     "least_film_ratio": Number(
-        TORQUE, "1", "least film ratio lambda_GF", FILM | {"roughness"}, label="least film ratio"
+        TORQUE, "1", "least film ratio lambda_GF", FILM | {"roughness"}, label="least film ratio", largest_is_best=True
     ),
     "micropitting_safety": Number(
         TORQUE,
@@ -83,6 +87,7 @@ QUANTITIES: dict[str, Number] = {
         "safety against micropitting, S_lambda",
         FILM | {"roughness", "permissible"},
         label="safety against micropitting S_lambda",
+        largest_is_best=True,
     ),
     "pressure_velocity": Number(
         TORQUE,

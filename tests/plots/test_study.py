@@ -8,6 +8,7 @@ from matplotlib.collections import PolyCollection, QuadMesh
 from matplotlib.patches import Rectangle
 from numpy.testing import assert_allclose, assert_array_equal
 
+from loaded_tca.errors import InputError
 from loaded_tca.plots import (
     plot_study,
     plot_study_heat_map,
@@ -145,6 +146,7 @@ def test_many_lines_have_few_labels():
     figure = plot_study_lines(grid(tips=tips), PRESSURE, LEAD, TIP)
     assert len(curves(figure.axes[0])) == 40
     assert len(figure.legends[0].texts) == 8
+    assert "40 curves, from dark to light; the legend names 8 of them" in title(figure)
 
 
 def test_axes_choose_the_keys_of_heat_maps_and_lines_of_three():
@@ -186,6 +188,11 @@ def test_heat_map_has_the_first_key_to_the_right_and_the_second_upwards():
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("pinion lead crowning [µm]", "pinion tip relief [µm]")
     turned = plot_study_heat_map(grid(), PRESSURE, upwards=LEAD).axes[0]
     assert turned.get_xlabel() == "pinion tip relief [µm]"
+
+
+def test_heat_map_of_one_key_on_both_axes_is_refused():
+    with pytest.raises(InputError, match=f"^across, upwards: found {LEAD} twice; allowed two different keys$"):
+        plot_study_heat_map(grid(), SPAN, LEAD, LEAD)
 
 
 def test_colour_bar_of_a_single_value_shows_that_value_alone():
@@ -298,6 +305,31 @@ def test_histogram_by_a_key_has_a_cumulative_curve_for_each_value():
     assert np.nanmax(low.get_xdata()[np.isfinite(low.get_xdata())]) == 7.0
     assert np.nanmax(high.get_xdata()[np.isfinite(high.get_xdata())]) == 15.0
     assert [text.get_text() for text in figure.legends[0].texts] == ["0", "4"]
+
+
+def nine_designs():
+    """Each with two samples, in the order of the designs."""
+    study = dataset(
+        {LEAD: np.repeat(np.arange(9.0), 2), MISALIGNMENT: np.tile([-1.0, 1.0], 9)},
+        {SPAN: np.outer(np.arange(18.0), [1.0, 2.0])},
+        torques=(40.0, 80.0),
+    )
+    study[LEAD].attrs["sampling"], study[MISALIGNMENT].attrs["sampling"] = "factor", "distribution"
+    return study
+
+
+def test_histogram_of_many_designs_says_how_many_its_legend_names():
+    figure = plot_study_histogram(nine_designs(), SPAN, [LEAD])
+    assert (len(figure.axes[0].lines), len(figure.legends[0].texts)) == (9, 5)
+    assert "9 curves, from dark to light; the legend names 5 of them" in title(figure)
+    few = plot_study_histogram(nine_designs().isel(sample=slice(0, 16)), SPAN, [LEAD])
+    assert (len(few.legends[0].texts), "legend" in title(few)) == (8, False)
+
+
+def test_band_over_the_torque_of_many_designs_says_that_it_mixes_them():
+    assert "median and band over 9 designs and their samples together" in title(plot_study_over_torque(nine_designs()))
+    assert "median and band over all variants" in title(plot_study_over_torque(sampled()))
+    assert "together" not in title(plot_study_over_torque(designs()))
 
 
 def test_band_over_the_torque_holds_nine_tenths_of_the_variants():

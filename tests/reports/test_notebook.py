@@ -13,8 +13,10 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from loaded_tca import read_scene
+from loaded_tca.contact import solve_contact
 from loaded_tca.errors import InputError
 from loaded_tca.plots.style import write_title
+from loaded_tca.reference.hertz import point_contact
 from loaded_tca.reports import card_of, notebook
 from loaded_tca.results import compare_results
 from loaded_tca.stages import read_stage
@@ -69,6 +71,12 @@ def _without_picture(monkeypatch):
     monkeypatch.setattr(notebook.Card, "_picture", lambda _: "")
 
 
+def contact():
+    """A ball of 10 mm on a plane."""
+    x = (np.arange(32) - 15.5) * 0.0225
+    return solve_contact(np.add.outer(x**2, x**2) / 20.0, (0.0225, 0.0225), 1e5, load=100.0)
+
+
 SUBJECTS = {
     "result": (cycle, ["peak pressure [MPa]", "load factor", "130 N m"]),
     "one position without load sharing": (lambda: result(positions=1), ["peak pressure [MPa]"]),
@@ -86,6 +94,11 @@ SUBJECTS = {
     "stage": (lambda: read_stage(stages.STAGE), ["teeth of sun, planet and ring", "Mesh of sun"]),
     "study": (lambda: Study(scene(), {LEAD: [3.0, 5.0]}), ["a study of 2 variants", LEAD, "3.0 ... 5.0"]),
     "design": (lambda: DesignResult(design_dataset()), ["pinion lead crowning [µm]", "start", "optimum"]),
+    "sensitivities": (
+        lambda: cycle().sensitivities([LEAD]),
+        ["under 130 N m", "TE, mean [um]", "per unit of pinion lead crowning [µm]", "largest of 2 torques"],
+    ),
+    "contact": (contact, ["a contact of two half-spaces on 32x32 cells", "load [N]100", "peak pressure [MPa]"]),
     "comparison": (lambda: compare_results({"a": cycle(), "b": cycle()}), ["Under 130 N m", "difference"]),
 }
 
@@ -135,6 +148,29 @@ def test_card_with_its_picture_is_small_and_has_no_colour_of_its_own_for_text():
         assert image.width == pytest.approx(notebook.WIDTH, abs=1)
         assert np.asarray(image.convert("L")).std() > 10.0  # something is drawn
     assert set(re.findall(r"(?<![-\w])color:([^;}]+)", notebook.STYLE)) == {"inherit"}
+
+
+@pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # kinks of spur teeth, told in the card
+def test_card_of_sensitivities_has_them_and_what_limits_them():
+    slopes = cycle().sensitivities([LEAD])
+    card = card_of(slopes)
+    ((_, *values),) = [row for row in card.tables[0].rows if row[0] == "per unit of pinion lead crowning [µm]"]
+    span = cycle().um_per_rad * slopes.peak_to_peak[-1, 0]
+    assert float(values[card.tables[0].head.index("peak to peak [um]") - 1]) == pytest.approx(span, rel=5e-3)
+    assert all(sentence in card.html for sentence in card.sentences["warning"])
+    halves = card_of(double_helical.analysed()[0].sensitivities([LEAD]))
+    assert halves.draw is None
+    assert "axial motion [um]" in halves.tables[0].head
+
+
+@pytest.mark.usefixtures("_without_picture")
+def test_card_of_a_contact_has_what_the_solution_has():
+    """The closed form of Hertz lies within the error that the card tells."""
+    told = dict(card_of(contact()).tables[0].rows)
+    ball = point_contact(100.0, (0.1, 0.1), 1e5)
+    error = float(told["estimated error of the peak pressure"].rstrip("%")) / 100.0
+    assert float(told["peak pressure [MPa]"]) == pytest.approx(ball.max_pressure, rel=error)
+    assert card_of(contact()).sentences["note"] == (contact().status.value,)
 
 
 @pytest.mark.usefixtures("_without_picture")

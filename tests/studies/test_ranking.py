@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import xarray
-from numpy.testing import assert_array_equal
+from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import InputError
 from loaded_tca.studies import rank_combinations, rank_variants, study_summary
@@ -123,3 +123,29 @@ def test_a_summary_of_several_designs_says_that_it_has_them_together():
     assert told in study_summary(study)
     assert "together" not in study_summary(study.isel(sample=[0, 1])), "one combination"
     assert "together" not in study_summary(study.drop_vars("mounting.misalignment_um")), "each variant is a design"
+
+
+@pytest.mark.parametrize(
+    "figure",
+    [
+        "least_planet_share",  # of a stage: 0 where a planet carries nothing
+        "wheel_bearing_life_Mrev",
+        "pinion_root_compression_MPa",  # negative
+        "wheel_root_stress_ratio",
+        "least_film_thickness_um",
+        "micropitting_safety",
+        "efficiency",
+    ],
+)
+def test_figures_of_which_the_largest_is_best_have_their_low_quantile(figure):
+    """Of even steps from 0 to 1 one in twenty is below 0.05, above 0.95 one in twenty."""
+    steps = np.linspace(0.0, 1.0, 21)
+    study = dataset({LEAD: [3.0] * 21, TIP: steps}, {figure: steps, "largest_planet_share": steps})
+    study[TIP].attrs["sampling"] = "distribution"
+    row = rank_combinations(study, figure).iloc[0]
+    assert_allclose(
+        [row[figure], rank_combinations(study, "largest_planet_share").iloc[0, 3]], [0.05, 0.95], rtol=1e-12
+    )
+    assert rank_variants(study, figure)["sample"].iloc[0] == 20
+    over = dataset({LEAD: [0.0, 3.0]}, {figure: [[1.0, 4.0], [2.0, 3.0]]}, torques=(40.0, 80.0))
+    assert rank_variants(over, figure)[figure].tolist() == [2.0, 1.0]  # the worst torque of each

@@ -5,8 +5,9 @@ import pytest
 import xarray
 from numpy.testing import assert_allclose
 
-from loaded_tca import read_scene
+from loaded_tca import parse_scene, read_scene
 from loaded_tca.errors import InputError
+from loaded_tca.reports.report import scatter_tables
 from loaded_tca.studies import (
     Study,
     rank_combinations,
@@ -95,6 +96,16 @@ def test_shortfall_of_each_class_stands_in_the_summary():
         shortfall(study, ["pinion.teeth"])
 
 
+@pytest.mark.parametrize("values", [["contact", "contact+tooth"], [True, False]])
+def test_shortfall_of_designs_of_words_and_booleans_stands_in_the_summary(values):
+    study = rows([1.2, 1.0, 1.0, 1.0]).assign_coords(
+        {"analysis.compliance": ("sample", [value for value in values for _ in range(2)], {"sampling": "factor"})}
+    )
+    lines = [line for line in study_summary(study).splitlines() if "below the required" in line]
+    for line, value, probability in zip(lines, values, (50, 100), strict=True):
+        assert f"under 100 N m, analysis.compliance {value}: probability {probability} %" in line
+
+
 TORQUE = "load.pinion_torque_Nm"
 
 
@@ -111,6 +122,25 @@ def test_shortfall_has_the_torque_of_its_samples(sampling, torques, words):
     assert_allclose(shortfall(study)["pinion_torque_Nm"], torques, rtol=0.0)
     text = study_summary(study)
     assert all(word in text for word in words)
+
+
+def test_safeties_under_a_load_spectrum_stand_once():
+    """They are of all bins together: the same number under each torque says nothing of that torque."""
+    bins = [{"pinion_torque_Nm": torque, "share": 0.5} for torque in (80.0, 500.0)]
+    study = rows([1.2, 1.3, 1.0, 1.05])
+    twice = {name: (("sample", "torque"), np.repeat(study[name].values, 2, axis=1)) for name in ("S_H_local",)}
+    twice["pinion_torque_Nm"] = ("sample", "torque"), np.tile([80.0, 500.0], (4, 1))
+    study = xarray.Dataset({**study[["status", "reason", "warnings"]].data_vars, **twice}, study.coords, study.attrs)
+    assert shortfall(study)["pinion_torque_Nm"].tolist() == [80.0, 500.0]  # torques that are load cases by themselves
+    scene = parse_scene(study.attrs["scene_toml"], folder=None)
+    changes = {"load.pinion_torque_Nm": None, "analysis.torques_Nm": None, "load.case": bins}
+    under = study.assign_attrs(scene_toml=scene.with_changes(changes).to_toml())
+    (row,) = shortfall(under).to_dict("records")
+    assert (row["below"], row["samples"], np.isnan(row["pinion_torque_Nm"])) == (2, 4, True)
+    text = study_summary(under)
+    assert text.count("below the required 1.1 under the load spectrum: probability 50 %") == 1
+    assert text.count("local safety against pitting ") == 2  # its percentiles, and its shortfall
+    assert [table.head[0] for table in scatter_tables(under, None)] == ["under the load spectrum"]
 
 
 def test_required_safety_that_varies_counts_of_each_sample():

@@ -8,11 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
+from scipy.stats import norm
 
 from loaded_tca import analyse, load_result
 from loaded_tca.contact import solve_contact
 from loaded_tca.errors import ConvergenceError, GeometryError, InputError
+from loaded_tca.plots import plot_study
 from loaded_tca.studies import Study, load_study, run_study
+from loaded_tca.studies.ranking import nominal_variant
 from tests.samples.studies import crowning, helical
 
 CROWNING, TEETH = "pinion.modifications.lead_crowning_um", "pinion.teeth"
@@ -50,6 +53,21 @@ def test_torques_are_a_dimension_shorter_lists_end_in_nan():
     found = run_study(Study(helical(), {"analysis.torques_Nm": [[20.0], [20.0, 40.0]]}))
     assert_array_equal(found["pinion_torque_Nm"], [[20.0, np.nan], [20.0, 40.0]])
     assert list(found["analysis.torques_Nm"].values) == ["[20.0]", "[20.0, 40.0]"]
+
+
+def ends(scene):
+    return {"ends": float(scene.analysis.free_edges)}
+
+
+def test_booleans_are_booleans_in_the_result_and_in_its_file(tmp_path):
+    out, key = tmp_path / "study.nc", "analysis.free_edges"
+    found = run_study(Study(helical(), {key: [True, False]}), out=out, figures=ends)
+    for study in (found, load_study(out)):
+        assert study[key].dtype == bool
+        assert study["ends"].values[study[key].values == True].tolist() == [[1.0]]  # noqa: E712, as users ask for it
+    assert nominal_variant(found) == 1  # without free edges, as the scene
+    (axes, *_) = plot_study(found)["study_lines_ends"].axes
+    assert [tick.get_text() for tick in axes.get_xticklabels()] == ["False", "True"]
 
 
 def failing(scene):
@@ -169,13 +187,52 @@ def test_maps_of_chosen_variants_are_kept(tmp_path):
     assert_array_equal(found["peak_pressure_MPa"][1], [result.key_figures()[0]["peak_pressure_MPa"]])
 
 
-def test_maps_of_another_study_are_not_left_under_its_numbers(tmp_path):
-    out = tmp_path / "study.nc"
+def crownings_in(folder):
+    """Names of kept results, and the crowning of each."""
+    paths = [path for path in sorted(folder.glob("*.nc")) if path.name != "notes.nc"]
+    return {path.name: load_result(path).scene.pinion.modifications.lead_crowning_um for path in paths}
+
+
+def test_maps_go_with_their_variants_into_another_study_and_come_back(tmp_path):
+    out, maps = tmp_path / "study.nc", tmp_path / "study_maps"
     run_study(study(2.0, 6.0, 8.0), out=out, keep_maps=[0, 1, 2])
-    run_study(study(6.0, 2.0), out=out, keep_maps=[0])
-    maps = sorted((tmp_path / "study_maps").iterdir())
-    assert [path.name for path in maps] == ["0.nc"]
-    assert load_result(maps[0]).scene.pinion.modifications.lead_crowning_um == 6.0
+    maps.joinpath("notes.nc").write_text("of the user")
+    before = {path.name: path.read_bytes() for path in maps.iterdir()}
+    with pytest.warns(UserWarning, match=r"^study: 1 kept result is of no variant of the study: moved to .*others; "):
+        run_study(study(6.0, 2.0), out=out)
+    assert crownings_in(maps) == {"0.nc": 6.0, "1.nc": 2.0}
+    assert [*crownings_in(maps / "others").values()] == [8.0]
+    run_study(study(2.0, 6.0, 8.0), out=out)
+    assert {path.name: path.read_bytes() for path in maps.iterdir()} == before
+
+
+def test_maps_are_lost_by_no_more_samples(tmp_path):
+    out, maps = tmp_path / "study.nc", tmp_path / "study_maps"
+    keys = {CROWNING: [2.0, 6.0]}, {"mounting.misalignment_um": norm(0.0, 6.0)}
+    run_study(Study(helical(), *keys, samples=2), out=out, keep_maps=[1, 3])
+    before = load_result(maps / "3.nc")
+    found = run_study(Study(helical(), *keys, samples=4), out=out)  # sample 1 of the second crowning is 4 + 1
+    after = load_result(maps / "5.nc")
+    assert crownings_in(maps) == {"1.nc": 2.0, "5.nc": 6.0}
+    assert after.dataset.identical(before.dataset)
+    assert after.scene.mounting.misalignment_um == found["mounting.misalignment_um"].values[5]
+
+
+def test_damaged_map_is_moved_aside_and_analysed_again(tmp_path):
+    out, maps = tmp_path / "study.nc", tmp_path / "study_maps"
+    run_study(study(2.0), out=out, keep_maps=[0])
+    maps.joinpath("0.nc").write_bytes(b"CDF")
+    with pytest.warns(UserWarning, match="1 kept result is of no variant"):
+        run_study(study(2.0), out=out, keep_maps=[0])
+    assert crownings_in(maps) == {"0.nc": 2.0}
+    assert [path.read_bytes() for path in (maps / "others").iterdir()] == [b"CDF"]
+
+
+def test_maps_of_variants_alike_all_find_a_number(tmp_path):
+    out, maps = tmp_path / "study.nc", tmp_path / "study_maps"
+    run_study(study(6.0, 6.0), out=out, keep_maps=[0, 1])
+    run_study(study(2.0, 6.0, 6.0), out=out)
+    assert crownings_in(maps) == {"1.nc": 6.0, "2.nc": 6.0}
 
 
 def test_maps_stay_where_they_are_not_asked_for_again(tmp_path):

@@ -108,6 +108,8 @@ def test_number_out_of_its_range_is_no_fault_of_the_study():
         ({"factors": {"pinion.modifications.lead_crowning": [1.0]}}, 'mean "pinion.modifications.lead_crowning_um"'),
         ({"factors": {"pinion.modifications": [1.0]}}, "pinion.modifications: a section"),
         ({"factors": {"pinion.teeth.more": [1]}}, "teeth.more: unknown key; pinion.teeth is a key, not a section"),
+        ({"factors": {"pinion.face_width_in": [1.0]}}, "not converted here; allowed pinion.face_width_mm"),
+        ({"distributions": {CROWNING: stats.norm}, "samples": 2}, "the distribution norm without parameters"),
         ({"factors": {CROWNING: []}}, f"{CROWNING}: no values"),
         ({"factors": {CROWNING: 3.0}}, f"{CROWNING}: found 3.0; allowed a list of values"),
         ({"factors": {CROWNING: "12"}}, f"{CROWNING}: found \"12\"; allowed a list of values"),
