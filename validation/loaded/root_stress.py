@@ -480,7 +480,7 @@ told" the memory that is reported before the elimination starts, and compared wi
 {meshes}
 
 The error depends on the layers through the tooth: those of the tooth compliance are too thick below the surface. A
-face of 20 modules takes less than 2 GiB, since beside the resolved tooth two layers are joined into one.
+face of 20 modules takes less than 1 GiB, since beside the resolved tooth two layers are joined into one.
 
 ## Nine gears
 
