@@ -11,16 +11,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
-from itertools import combinations, pairwise
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from loaded_tca.compliance.model import BendingModel, SumOfParts
 from loaded_tca.contact.cuts import crowding_growth
-from loaded_tca.edges.free import MovedSlices, edge_deflection_growth
-from loaded_tca.loaded.force_lines import LoadedSlices
-from loaded_tca.pairs.gear_pair import cylindrical_basis
+from loaded_tca.edges.free import edge_deflection_growth
+from loaded_tca.pairs.gear_pair import MovedSlices, cylindrical_basis
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.slice_pressure import JUMP
 from loaded_tca.separation import Separation
@@ -32,6 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from loaded_tca.arrays import Array, Indices, Mask
+    from loaded_tca.compliance.model import BendingPart
     from loaded_tca.loaded.loaded_grid import LoadedGrid
     from loaded_tca.loaded.sensitivity import Tangents
     from loaded_tca.pairs.gear_pair import GearPair
@@ -132,7 +131,7 @@ ARRAYS = tuple(one.name for one in fields(GapGrowth) if one.name != "kinks")
 def gap_growth(
     result: CycleNumbers,
     tangents: Tangents,
-    bending: BendingModel | None,
+    bending: BendingPart | None,
     places: tuple[Array, ...],
     changes: Sequence[PairChange],
 ) -> GapGrowth:
@@ -143,7 +142,7 @@ def gap_growth(
     result : MeshCycle
     tangents : Tangents
         Of all states.
-    bending : BendingModel or None
+    bending : BendingPart or None
     places : three (grids,) arrays
         Torque, position and pair of each grid.
     changes : sequence of PairChange
@@ -169,7 +168,7 @@ def gap_growth(
 def _growth(
     result: CycleNumbers,
     tangents: Tangents,
-    bending: BendingModel | None,
+    bending: BendingPart | None,
     places: tuple[Array, ...],
     changes: Sequence[PairChange],
 ) -> tuple[GapGrowth, Mask]:
@@ -241,7 +240,7 @@ def _first_rotations(tangents: Tangents, opened: Array, lever_torques: Array) ->
 def _add_displaced(
     result: CycleNumbers,
     tangents: Tangents,
-    bending: BendingModel | None,
+    bending: BendingPart | None,
     changes: Sequence[PairChange],
     growth: MovedContacts,
     shifts: Array,
@@ -316,7 +315,7 @@ class MotionGrowth:
 def motion_growth(
     result: CycleNumbers,
     tangents: Tangents,
-    bending: BendingModel | None,
+    bending: BendingPart | None,
     displaced: Callable[[Array, float], Array] | None = None,
 ) -> MotionGrowth:
     """Growth with the motions of the grids.
@@ -325,7 +324,7 @@ def motion_growth(
     ----------
     result : MeshCycle
     tangents : Tangents
-    bending : BendingModel or None
+    bending : BendingPart or None
     displaced : callable, optional
         Growth of the displacement of the active cells (n,) beside that of the teeth by motions (grids, 6) of the grids,
         with a step of these [mm]; default: there is none.
@@ -397,7 +396,7 @@ def moved(grid: Grid, motion: Array) -> Grid:
 def _add_moved_lines(
     pair: GearPair,
     tangents: Tangents,
-    bending: BendingModel | None,
+    bending: BendingPart | None,
     changes: Sequence[PairChange],
     growth: MovedContacts,
     shifts: Array,
@@ -415,6 +414,7 @@ def _add_moved_lines(
     slices = (
         slices + (np.cumsum([one.y.size for one in separations]) - [one.y.size for one in separations])[tangents.grid]
     )
+    forces = np.concatenate([grid.slice_force for grid in grids])
     if free_edges:
         lines = motions.copy()
         lines[..., 0] = shifts[..., 0]
@@ -424,30 +424,16 @@ def _add_moved_lines(
             if not change.of_modifications or lines[key].any()
         }
         if steps:
-            forces = np.concatenate([grid.slice_force for grid in grids])
             gaps[[*steps]] += edge_deflection_growth(pair, separations, forces, [*steps.values()])[:, slices]
-    for key, change in enumerate(changes):
-        if bending is not None and not change.of_modifications:
-            moves = motions[key].any(axis=-1) | (change.below is not change.above)
-            low, high = (
-                _bent(tangents, bending.mounted(gears) if isinstance(bending, SumOfParts) else bending, there, moves)
-                for gears, there in _on_both_sides(change, separations, motions[key])
-            )
-            gaps[key] += ((high - low) / change.difference)[slices]
+    moving = [key for key, change in enumerate(changes) if not change.of_modifications]
+    if bending is not None and moving:
+        contacts = [(grid.number, grid.separation) for grid in grids]
+        moved_slices = [_moved_slices(pair, changes[key], separations, motions[key]) for key in moving]
+        gaps[moving] += bending.deflection_growth(contacts, tangents.state, forces, moved_slices)[:, slices]
     others = [key for key, change in enumerate(changes) if change.of_modifications]
     if tangents.by_shift is not None and others:
         across = np.repeat(motions[others][..., 0], [one.y.size for one in separations], axis=1)
         gaps[others] += (tangents.by_shift @ across.T).T[:, slices]
-
-
-def _on_both_sides(
-    change: PairChange, separations: Sequence[Separation], motions: Array
-) -> list[tuple[GearPair, list[Separation]]]:
-    """Pairs of gears that a key changes, and grids that it moves (grids, 6), below and above."""
-    return [
-        (gears, [moved(one, part * change.difference * by) for one, by in zip(separations, motions, strict=True)])
-        for gears, part in ((change.below, -0.5), (change.above, 0.5))
-    ]
 
 
 def _moved_slices(pair: GearPair, change: PairChange, separations: Sequence[Separation], motions: Array) -> MovedSlices:
@@ -458,34 +444,11 @@ def _moved_slices(pair: GearPair, change: PairChange, separations: Sequence[Sepa
     if change.of_modifications:
         width = min(min(one.spacing) for one in separations)
         change = replace(change, below=pair, above=pair, difference=PART_OF_CELL * width / np.abs(motions).max())
-    low, high = _on_both_sides(change, separations, motions)
+    low, high = (
+        (gears, [moved(one, part * change.difference * by) for one, by in zip(separations, motions, strict=True)])
+        for gears, part in ((change.below, -0.5), (change.above, 0.5))
+    )
     return MovedSlices(low, high, change.difference)
-
-
-def _bent(tangents: Tangents, bending: BendingModel, separations: Sequence[Separation], moves: Mask) -> Array:
-    """Bending of the slices of all grids, in one row [mm], under the forces as they are, on other grids.
-
-    As far as it has a part in grids that move (grids,).
-    """
-    grids, whole = tangents.grids, [grid.slice_force for grid in tangents.grids]
-    loaded = [np.flatnonzero(force) for force in whole]
-    forces = [force[own] for force, own in zip(whole, loaded, strict=True)]
-    lines = [
-        (grid.number, LoadedSlices.of(one, own)) for grid, one, own in zip(grids, separations, loaded, strict=True)
-    ]
-    deflections = [
-        bending.within(*line) @ force if is_moved else np.zeros(force.size)
-        for line, force, is_moved in zip(lines, forces, moves.tolist(), strict=True)
-    ]
-    for state in np.split(np.arange(len(grids)), np.flatnonzero(np.diff(tangents.state)) + 1):
-        for i, j in combinations(state.tolist(), 2):
-            if moves[i] or moves[j]:
-                between = bending.between(lines[i], lines[j])
-                deflections[i] += between @ forces[j]
-                deflections[j] += between.T @ forces[i]
-    for force, own, bent in zip(whole, loaded, deflections, strict=True):
-        force[own] = bent
-    return np.concatenate(whole)
 
 
 STEP = 1e-3
