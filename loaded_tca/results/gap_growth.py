@@ -18,6 +18,7 @@ import numpy as np
 
 from loaded_tca.contact.cuts import crowding_growth
 from loaded_tca.edges.free import edge_deflection_growth
+from loaded_tca.edges.places import dilated
 from loaded_tca.pairs.gear_pair import MovedSlices, cylindrical_basis
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.slice_pressure import JUMP
@@ -111,18 +112,21 @@ class GapGrowth:
 
         return replace(self._with(spread), kinks=None if self.kinks is None else self.kinks._with(spread))
 
-    def with_sides(self, kinked: Sequence[int], sides: GapGrowth) -> GapGrowth:
-        """The same, of keys that have kinks the mean of both sides: those by growing values, and then by falling ones.
+    def with_sides_joined(self, kinked: Sequence[int], count: int) -> GapGrowth:
+        """The same of ``count`` keys, some of which have kinks.
 
-        The derivative of a figure is the mean, too, and on the sides it is more or less than that by half the kink.
+        Rows of this growth are the keys without kinks, then those with kinks by growing values, and by falling ones.
+        The derivative of a figure is the mean of both, and on the sides it is more or less than that by half the kink.
         """
-        half, rows = len(kinked), list(kinked)
-        apart = sides._with(lambda values: values[:half] - values[half:]).at_keys(rows, len(self.turns))
-        whole = self._with(np.copy)
-        for name in ARRAYS:
-            both = getattr(sides, name)
-            getattr(whole, name)[rows] = 0.5 * (both[:half] + both[half:])
-        return replace(whole, kinks=apart)
+        half, others = len(kinked), [key for key in range(count) if key not in kinked]
+
+        def joined(values: Array) -> Array:
+            rows, sides = np.empty((count, *values.shape[1:])), values[len(others) :]
+            rows[others], rows[list(kinked)] = values[: len(others)], 0.5 * (sides[:half] + sides[half:])
+            return rows
+
+        apart = self._with(lambda values: values[len(others) :][:half] - values[len(others) :][half:])
+        return replace(self._with(joined), kinks=apart.at_keys(kinked, count))
 
 
 ARRAYS = tuple(one.name for one in fields(GapGrowth) if one.name != "kinks")
@@ -151,18 +155,24 @@ def gap_growth(
         none = np.zeros((0, tangents.state.size))
         motions, tilts = (np.zeros((*none.shape, count)) for count in (OF_GRIDS, 2))
         return GapGrowth(np.zeros((0, tangents.grid.size)), none, motions, none, tilts, tilts)
-    pair, of_pairs = result.gear_pair, (result, tangents, bending, places)
-    growth, at_one_place = _growth(*of_pairs, changes)
-    kinked = [
-        key
-        for key, change in enumerate(changes)
-        if not change.of_modifications and (at_one_place[key] or change.has_kink_at(pair))
-    ]
-    if not kinked:
-        return growth
-    sides = zip(*(changes[key].to_sides_of(pair) for key in kinked), strict=True)
-    by_sides, _ = _growth(*of_pairs, [change for side in sides for change in side])
-    return growth.with_sides(kinked, by_sides)
+    pair = result.gear_pair
+    if not (kinked := _keys_with_kinks(pair, tangents.grids, changes)):
+        return _growth(result, tangents, bending, places, changes)
+    others = [change for key, change in enumerate(changes) if key not in kinked]
+    growing, falling = zip(*(changes[key].to_sides_of(pair) for key in kinked), strict=True)
+    growth = _growth(result, tangents, bending, places, [*others, *growing, *falling])
+    return growth.with_sides_joined(kinked, len(changes))
+
+
+def _keys_with_kinks(pair: GearPair, grids: Sequence[LoadedGrid], changes: Sequence[PairChange]) -> list[int]:
+    """Keys by which edges of both gears at one place part, or the wheel moves otherwise to either side."""
+    if not (moving := [key for key, change in enumerate(changes) if not change.of_modifications]):
+        return []
+    cells = [grid.pressed & dilated(grid.separation.cover < 1.0) for grid in grids]
+    contacts, separations = [grid.contact for grid in grids], [grid.separation for grid in grids]
+    held = contact_changes(pair, contacts, separations, cells, [changes[key] for key in moving])
+    parts = zip(moving, held.border.has_kinks.tolist(), strict=True)
+    return [key for key, at_one_place in parts if at_one_place or changes[key].has_kink_at(pair)]
 
 
 def _growth(
@@ -171,8 +181,8 @@ def _growth(
     bending: BendingPart | None,
     places: tuple[Array, ...],
     changes: Sequence[PairChange],
-) -> tuple[GapGrowth, Mask]:
-    """Growth with each change, and by which of them edges of both gears at one place part."""
+) -> GapGrowth:
+    """Growth with each change, without kinks."""
     pair, grids, (_, positions, pairs) = result.gear_pair, tangents.grids, places
     separations, count = [grid.separation for grid in grids], len(changes)
     # contacts are traced at the middles of their ways, from where the pinion goes on
@@ -205,8 +215,7 @@ def _growth(
     motions, turned_back, tilts, shifts = (
         values[:count] for values in (growth.motions, points.turns, points.tilts, points.shifts)
     )
-    whole = GapGrowth(gaps[:count], lever_torques[:count], motions, turned_back, tilts, shifts)
-    return whole, held.border.has_kinks[:count]
+    return GapGrowth(gaps[:count], lever_torques[:count], motions, turned_back, tilts, shifts)
 
 
 NO_WAY = 1e-12
