@@ -23,9 +23,9 @@ from loaded_tca.threads import side_by_side
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from loaded_tca.arrays import Array
+    from loaded_tca.arrays import Array, Indices
     from loaded_tca.pairs.gear import Gear
-    from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
+    from loaded_tca.pairs.gear_pair import ContactGrid, GearPair, MovedSlices
 
 NEWTON_STEPS, NO_FURTHER = 2, 1e-3
 """From the tangent plane to the flank, a fiftieth of the distance along it: the second leaves 1e-6 of that. A step of
@@ -145,6 +145,68 @@ class ToothCompliance:
         (there,), (here,) = self._lines([at]), self._lines([under])
         return self.pinion.deflection(there[0], here[0], forces) + self.wheel.deflection(there[1], here[1], forces)
 
+    def deflection_growth(
+        self,
+        contacts: Sequence[tuple[int, ContactGrid]],
+        state: Indices,
+        forces: Array,
+        moved: Sequence[MovedSlices],
+    ) -> Array:
+        """Growth (keys, n) [mm per unit] of the deflection of slices under forces as they are, as gears and grids move.
+
+        The finite element models stay: the deflection follows the places of the forces on the flanks, which are found
+        on both sides of each key. How it follows them is found once for all keys.
+
+        Parameters
+        ----------
+        contacts : sequence of (int, ContactGrid)
+            Numbers of tooth pairs and grids of their contacts, as in :meth:`within`.
+        state : (contacts,) int array
+            That each belongs to, state by state; contacts of one state displace each other.
+        forces : (n,) array [N]
+            On the slices of all contacts, in one row; where there are none, the growth is left out.
+        moved : sequence of MovedSlices
+            With each key, the slices of all contacts.
+        """
+        grids = [grid for _, grid in contacts]
+        numbers, sizes = np.array([number for number, _ in contacts]), [len(grid.y) for grid in grids]
+        moves = np.empty((2, 2, len(moved), forces.size))
+        for key, one in enumerate(moved):
+            low, high = (self._parts(*side) for side in (one.low, one.high))
+            moves[:, :, key] = (high - low) / one.difference
+        in_row = np.split(np.arange(forces.size), np.cumsum(sizes)[:-1])
+        loaded = [own[forces[own] != 0.0] for own in in_row]
+        growth = np.zeros((len(moved), forces.size))
+        for own in np.split(np.arange(len(grids)), np.flatnonzero(np.diff(state)) + 1):
+            some = [loaded[k] - in_row[k][0] for k in own]
+            distances = [
+                np.hypot(*(np.subtract.outer(part[at], part[at]) for part in (grids[k].y, grids[k].force_line)))
+                for k, at in zip(own, some, strict=True)
+            ]
+            coupled = np.abs(np.subtract.outer(numbers[own], numbers[own])) <= self.neighbours
+            lines = [self.lines(*contacts[k]) for k in own]
+            for side, gear in enumerate((self.pinion, self.wheel)):
+                on_flank = [
+                    FlankLine(line[side].tooth, line[side].rho[at], line[side].z[at])
+                    for line, at in zip(lines, some, strict=True)
+                ]
+                parts = [moves[side][..., loaded[k]] for k in own]
+                grown = gear.deflection_growth(on_flank, distances, [forces[loaded[k]] for k in own], parts, coupled)
+                growth[:, np.concatenate([loaded[k] for k in own])] += np.concatenate(grown, axis=1)
+        return growth
+
+    def _parts(self, pair: GearPair, grids: Sequence[ContactGrid]) -> Array:
+        """Parts (2, 2, n) of height and face width at which the slices of grids lie on both gears, these in a pair."""
+        sizes = np.array([len(grid.y) for grid in grids])
+        first, parts = np.cumsum(sizes) - sizes, np.empty((2, 2, sizes.sum()))
+        for count in np.unique(sizes).tolist():
+            alike = np.flatnonzero(sizes == count)
+            in_row = first[alike, None] + np.arange(count)
+            on_flanks = _on_flanks(pair, [grids[k] for k in alike.tolist()])
+            for own, gear, places in zip(parts, (self.pinion, self.wheel), on_flanks, strict=True):
+                own[:, in_row] = gear.frame.parts(*places)
+        return parts
+
     def lines(self, number: int, grid: ContactGrid) -> tuple[FlankLine, FlankLine]:
         """Places of the forces of a grid's slices on the flanks of pinion and wheel; kept as long as the grid is.
 
@@ -189,15 +251,20 @@ def flank_lines(pair: GearPair, number: int, grid: ContactGrid) -> tuple[FlankLi
 
 def lines_of_each(pair: GearPair, contacts: Sequence[tuple[int, ContactGrid]]) -> list[tuple[FlankLine, FlankLine]]:
     """Results of :func:`flank_lines` for the numbers and grids of contacts with equally many slices."""
-    names = "origin", "axes", "force_line", "y"
-    origin, axes, across, along = (np.array([getattr(grid, name) for _, grid in contacts]) for name in names)
-    points = origin[:, None] + across[..., None] * axes[:, None, 0] + along[..., None] * axes[:, None, 1]
-    points = _on_flank(pair.pinion.nominal_flank, points, axes[:, 2], origin, NO_FURTHER * pair.module)
-    rho, radius, axial = np.hypot(points[..., 0], points[..., 1]), *pair.on_wheel(points)
+    (rho, z), (radius, axial) = _on_flanks(pair, [grid for _, grid in contacts])
     return [
-        (FlankLine(-pair.sense * number, rho[k], points[k, :, 2]), FlankLine(pair.sense * number, radius[k], axial[k]))
+        (FlankLine(-pair.sense * number, rho[k], z[k]), FlankLine(pair.sense * number, radius[k], axial[k]))
         for k, (number, _) in enumerate(contacts)
     ]
+
+
+def _on_flanks(pair: GearPair, grids: Sequence[ContactGrid]) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+    """Radii and axial places (k, n) on pinion and wheel of the slices of k grids with equally many [mm]."""
+    names = "origin", "axes", "force_line", "y"
+    origin, axes, across, along = (np.array([getattr(grid, name) for grid in grids]) for name in names)
+    points = origin[:, None] + across[..., None] * axes[:, None, 0] + along[..., None] * axes[:, None, 1]
+    points = _on_flank(pair.pinion.nominal_flank, points, axes[:, 2], origin, NO_FURTHER * pair.module)
+    return (np.hypot(points[..., 0], points[..., 1]), points[..., 2]), pair.on_wheel(points)
 
 
 def _on_flank(flank: Flank, points: Array, normal: Array, origin: Array, enough: float) -> Array:

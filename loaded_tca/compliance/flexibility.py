@@ -73,6 +73,13 @@ def depth_displacement(depth: Array, distance: Array, material: Material) -> Arr
     return np.asarray(scale * (depth * depth / square + 2.0 * (1.0 - nu)) / np.sqrt(square))
 
 
+def depth_displacement_by_depth(depth: Array, distance: Array, material: Material) -> Array:
+    """Derivative of :func:`depth_displacement` by the depth [1/N], of the same arguments."""
+    square, nu = depth * depth + distance * distance, material.poisson_ratio
+    scale = (1.0 + nu) / (2.0 * math.pi * material.youngs_modulus)
+    return np.asarray(scale * depth * (2.0 * nu - 3.0 * depth * depth / square) / (square * np.sqrt(square)))
+
+
 def depth_displacement_slope(depth: float, square: Array, material: Material) -> Array:
     """Derivative of :func:`depth_displacement` by the square of the distance [1/(N mm)], at squares [mm^2]."""
     from_force, nu = depth * depth + square, material.poisson_ratio

@@ -28,12 +28,17 @@ from functools import cached_property, lru_cache
 from weakref import WeakKeyDictionary, ref
 
 import numpy as np
-from numpy.polynomial.chebyshev import chebvander
+from numpy.polynomial.chebyshev import chebder, chebvander
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.compliance.body import ToothFrame, gear_nodes
-from loaded_tca.compliance.flexibility import ToothFlexibility, depth_displacement, kept_flexibility
+from loaded_tca.compliance.flexibility import (
+    ToothFlexibility,
+    depth_displacement,
+    depth_displacement_by_depth,
+    kept_flexibility,
+)
 from loaded_tca.compliance.kept import MOST_IN_MEMORY, forget_kept
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.errors import InputError
@@ -108,9 +113,8 @@ class GearCompliance:
     def deflection(self, at: FlankLine, under: FlankLine, forces: Array) -> Array:
         """Displacements (m,) [mm] under forces (n,) [N] at the others: the product of :meth:`between` with them."""
         away, there, here = self._away(at, under), self._places(at), self._places(under)
-        spread = here.across.T @ (forces[:, None] * here.along)
-        moved = (self._mutual[self.neighbours + away] @ spread.ravel()).reshape(spread.shape)
-        return np.asarray(((there.across @ moved) * there.along).sum(axis=1))
+        on_table = here.gathered(forces)
+        return there.read((self._mutual[self.neighbours + away] @ on_table.ravel()).reshape(on_table.shape))
 
     def _away(self, at: FlankLine, under: FlankLine) -> int:
         """Pitches from the tooth of one line to that of another."""
@@ -149,18 +153,25 @@ class GearCompliance:
             n places of the forces; default: the same ones.
         """
         at, there = self._places(line), self._places(line if under is None else under)
-        width, deviation, at_end = self._spread
-        from_start = width * (at.length[..., None] + there.length[..., None, :])
-        images = from_start, 2.0 * width - from_start  # beyond the ends of the face
-        # Line density [1/mm], whose integral over the distances of a line is 1, and what free ends add.
-        spread = _normal(deviation, distance, *images) + _normal(at_end, *images)
+        spread = self._spread_along(distance, self._images(at, there))
         displacements = self._local(at, spread, distance)
         mutual = displacements.mT if under is None else self._local(there, spread.mT, distance.mT).mT
         return self._displaced(0, at, there) + 0.5 * (displacements + mutual)
 
+    def _images(self, at: _Places, under: _Places) -> tuple[Array, Array]:
+        """Distances (m, n) of places to the mirror images of others beyond both ends of the face [mm]."""
+        width, *_ = self._spread
+        from_start = width * (at.length[..., None] + under.length[..., None, :])
+        return from_start, 2.0 * width - from_start
+
+    def _spread_along(self, distance: Array, images: tuple[Array, Array]) -> Array:
+        """Line density [1/mm], whose integral over the distances of a line is 1, and what free ends add."""
+        _, deviation, at_end = self._spread
+        return _normal(deviation, distance, *images) + _normal(at_end, *images)
+
     def _local(self, places: _Places, spread: Array, distance: Array) -> Array:
         """Local term (m, n) less what the half-space counts, by the depth below the m places."""
-        depth = (places.across @ self.table.depth * places.along).sum(axis=-1)[..., None]
+        depth = places.read(self.table.depth)[..., None]
         half_space = depth_displacement(depth, distance, self.frame.gear.material)
         local = np.interp(places.height, self.table.local_height, self.table.local_value)
         return np.asarray(local[..., None] * spread - half_space)
@@ -170,8 +181,72 @@ class GearCompliance:
         together = FlankLine(0, np.array([line.rho for line in lines]), np.array([line.z for line in lines]))
         displacements, places = self.within(together, distance), self._places(together)
         for k, line in enumerate(lines):
-            _KEPT[line] = ref(self), places.of_line(k)
+            _KEPT[line] = ref(self), places.some(k)
         return displacements
+
+    def deflection_growth(
+        self,
+        lines: Sequence[FlankLine],
+        distances: Sequence[Array],
+        forces: Sequence[Array],
+        moves: Sequence[Array],
+        coupled: Mask,
+    ) -> list[Array]:
+        """Growth (keys, m) [mm per unit] of the displacements of places under forces as they are, as all places move.
+
+        Displacements are reciprocal: that by the places of the forces follows from that by the places displaced.
+
+        Parameters
+        ----------
+        lines : sequence of FlankLine
+            m places on each of several teeth.
+        distances : sequence of (m, m) arrays [mm]
+            Between the places of each line, along it; they stay.
+        forces : sequence of (m,) arrays [N]
+            At the places of each line.
+        moves : sequence of (2, keys, m) arrays [1 per unit]
+            Growth of the parts of the flank's height and of the face width at which the places lie.
+        coupled : (teeth, teeth) bool array
+            Which teeth displace each other; each displaces itself.
+
+        Raises
+        ------
+        InputError
+            If two coupled teeth are further apart than those of the model.
+        """
+        moved = [_MovedPlaces.of(self, self._places(line), *move) for line, move in zip(lines, moves, strict=True)]
+        on_tables = [
+            np.stack([one.places.gathered(force), *one.gathered(force)])
+            for one, force in zip(moved, forces, strict=True)
+        ]
+        growths = []
+        for at, (line, one, distance, force) in enumerate(zip(lines, moved, distances, forces, strict=True)):
+            displaced = np.zeros(on_tables[at].shape)
+            for under in np.flatnonzero(coupled[at]).tolist():
+                mutual, on_table = self._mutual[self.neighbours + self._away(line, lines[under])], on_tables[under]
+                displaced += (on_table.reshape(len(on_table), -1) @ mutual.T).reshape(on_table.shape)
+            growth = one.read(displaced[0]) + one.places.read(displaced[1:])
+            growths.append(growth + self._local_growth(one, distance, force))
+        return growths
+
+    def _local_growth(self, moved: _MovedPlaces, distance: Array, forces: Array) -> Array:
+        """Growth (keys, m) of the local term under forces on its places, less that of the half-space."""
+        places, heights, values = moved.places, self.table.local_height, self.table.local_value
+        (width, *deviations), images = self._spread, self._images(places, places)
+        spread = self._spread_along(distance, images)
+        from_start, from_end = (
+            np.sum([_normal(one, image) * image / one**2 for one in deviations], axis=0) for image in images
+        )
+        flatter, local = width * (from_end - from_start), np.interp(places.height, heights, values)
+        by_height = np.pad(np.diff(values) / np.diff(heights), 1)  # beyond its ends the local term is even
+        softer = by_height[np.searchsorted(heights, places.height)] * moved.higher
+        depth, deeper = places.read(self.table.depth)[:, None], moved.read(self.table.depth)
+        half_space = depth_displacement_by_depth(depth, distance, self.frame.gear.material)
+        growth = softer * (spread @ forces) + local * (moved.further * (flatter @ forces))
+        growth += local * ((moved.further * forces) @ flatter) - deeper * (half_space @ forces)
+        growth += (softer * forces) @ spread + (moved.further * (local * forces)) @ flatter
+        growth += moved.further * (flatter @ (local * forces)) - (deeper * forces) @ half_space
+        return np.asarray(0.5 * growth)
 
     @cached_property
     def _spread(self) -> tuple[float, float, float]:
@@ -231,14 +306,63 @@ class _Places:
         across, along = polynomials[0, ..., : len(across)] @ across, polynomials[1, ..., : len(along)] @ along
         return cls(height, length, across, along)
 
-    def of_line(self, k: int) -> _Places:
-        """Those of one of several lines."""
-        return _Places(self.height[k], self.length[k], self.across[k], self.along[k])
+    def some(self, which: int | Indices) -> _Places:
+        """Those of one of several lines, or some of one line."""
+        return _Places(self.height[which], self.length[which], self.across[which], self.along[which])
+
+    def read(self, table: Array) -> Array:
+        """Values (..., m) at the places of numbers (..., a, b) at the places of the table."""
+        return np.asarray(((self.across @ table) * self.along).sum(axis=-1))
+
+    def gathered(self, forces: Array) -> Array:
+        """Forces (a, b) on the places of the table that stand for forces (m,) on the places of one line."""
+        return np.asarray(self.across.T @ (forces[:, None] * self.along))
 
     @cached_property
     def shares(self) -> Array:
         """Shares (m, a b) of the places of the table in every place."""
         return shares_of_grid(self.across, self.along)
+
+
+@dataclass(frozen=True, eq=False)
+class _MovedPlaces:
+    """Places (m,) of a line that moves, and the growth of their Lagrange polynomials.
+
+    Attributes
+    ----------
+    places : _Places
+    across, along : (m, a), (m, b) array
+        Growth of the polynomials by the parts of height and face width.
+    higher, further : (keys, m) array [1 per unit]
+        Growth of these parts.
+    """
+
+    places: _Places
+    across: Array
+    along: Array
+    higher: Array
+    further: Array
+
+    @classmethod
+    def of(cls, gear: GearCompliance, places: _Places, higher: Array, further: Array) -> _MovedPlaces:
+        """Those of a gear's table."""
+        across, along = (
+            chebvander(2.0 * part - 1.0, len(own) - 2) @ (2.0 * chebder(own))
+            for part, own in zip((places.height, places.length), gear.interpolation, strict=True)
+        )
+        return cls(places, across, along, higher, further)
+
+    def read(self, table: Array) -> Array:
+        """Growth (keys, m) of what :meth:`_Places.read` has of numbers (a, b)."""
+        by_height = ((self.across @ table) * self.places.along).sum(axis=1)
+        return np.asarray(
+            by_height * self.higher + ((self.places.across @ table) * self.along).sum(axis=1) * self.further
+        )
+
+    def gathered(self, forces: Array) -> Array:
+        """Growth (keys, a, b) of what :meth:`_Places.gathered` has of forces (m,)."""
+        by_height = self.across.T @ ((forces * self.higher)[..., None] * self.places.along)
+        return np.asarray(by_height + self.places.across.T @ ((forces * self.further)[..., None] * self.along))
 
 
 def gear_compliance(gear: Gear, density: MeshDensity = MeshDensity()) -> GearCompliance:

@@ -13,11 +13,11 @@ from typing import Protocol, Self, TypeVar
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.body import body_torsion
 from loaded_tca.compliance.compliance import rim_compliance, tooth_compliance
 from loaded_tca.compliance.teeth import way_out_told
-from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
+from loaded_tca.pairs.gear_pair import ContactGrid, GearPair, MovedSlices
 from loaded_tca.scene import Scene
 from loaded_tca.scene.build import arguments_by_keys
 from loaded_tca.supports import SupportCompliance, support_compliance
@@ -70,6 +70,23 @@ class BendingPart(BendingModel, Protocol):
 
     def mounted(self, pair: GearPair) -> Self:
         """These bodies in a pair whose wheel stands elsewhere."""
+
+    def deflection_growth(
+        self, contacts: Sequence[tuple[int, ContactGrid]], state: Indices, forces: Array, moved: Sequence[MovedSlices]
+    ) -> Array:
+        """Growth (keys, n) [mm per unit] of the deflection of slices under forces as they are, as gears and grids move.
+
+        Parameters
+        ----------
+        contacts : sequence of (int, ContactGrid)
+            Numbers and grids of contacts of many states, state by state.
+        state : (contacts,) int array
+            That each belongs to: contacts of one state deflect each other.
+        forces : (n,) array [N]
+            On the slices of all contacts, in one row; where there are none, the growth is left out.
+        moved : sequence of MovedSlices
+            With each key, the slices of all contacts.
+        """
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,6 +158,12 @@ class SumOfParts(BendingModel):
     def mounted(self, pair: GearPair) -> SumOfParts:
         """These parts in a pair whose wheel stands elsewhere."""
         return SumOfParts(tuple(part.mounted(pair) for part in self.parts))
+
+    def deflection_growth(
+        self, contacts: Sequence[tuple[int, ContactGrid]], state: Indices, forces: Array, moved: Sequence[MovedSlices]
+    ) -> Array:
+        """Growth (keys, n) [mm per unit] of the deflection of slices, as of :class:`BendingPart`."""
+        return _sum([part.deflection_growth(contacts, state, forces, moved) for part in self.parts])
 
 
 def _sum(deflections: list[Array]) -> Array:

@@ -41,7 +41,7 @@ from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import EDGE_NAMES, outward_normal
 from loaded_tca.flanks.rounding import sharp
 from loaded_tca.material import Material
-from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
+from loaded_tca.pairs.gear_pair import ContactGrid, GearPair, MovedSlices
 from loaded_tca.separation import Separation
 
 DEPTH = 0.25 * math.pi
@@ -186,7 +186,7 @@ class EdgeFromSlices(NamedTuple):
         return factor, problems
 
 
-def edges_from_slices(pair: GearPair, grids: Sequence[Slices]) -> list[EdgeFromSlices]:
+def edges_from_slices(pair: GearPair, grids: Sequence[ContactGrid]) -> list[EdgeFromSlices]:
     """Edges of both gears that add to the deflection of slices."""
     return _edges_from(pair, np.concatenate([one.origin + one.y[:, None] * one.axes[1] for one in grids]))
 
@@ -444,14 +444,6 @@ def _pairs(first: Indices, count: Indices) -> Iterator[tuple[Indices, Indices]]:
             part, number = np.arange(start, stop), count[start:stop]
             begin = number.cumsum() - number
             yield part.repeat(number), np.arange(number.sum()) + (first[start:stop] - begin).repeat(number)
-
-
-class MovedSlices(NamedTuple):
-    """Pairs of gears and slices of all grids a step below and above a value of a key, and the step between."""
-
-    low: tuple[GearPair, Sequence[Slices]]
-    high: tuple[GearPair, Sequence[Slices]]
-    difference: float
 
 
 def edge_deflection_growth(

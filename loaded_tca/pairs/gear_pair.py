@@ -21,7 +21,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol
 
 import numpy as np
 
@@ -34,6 +34,9 @@ from loaded_tca.material import contact_modulus
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.plain import plain
 from loaded_tca.tooth.surface import Resolution, ToothSurface, TriangleMesh, build_tooth, grid_triangles
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 Driving = GearName
 Sense = Literal["positive", "negative"]
@@ -57,6 +60,14 @@ class ContactGrid(Protocol):
     @property
     def force_line(self) -> Array:
         """Where across the contact the force of every slice acts (ny,) [mm], from the contact point."""
+
+
+class MovedSlices(NamedTuple):
+    """Pairs of gears and slices of all grids a step below and above a value of a key, and the step between."""
+
+    low: tuple[GearPair, Sequence[ContactGrid]]
+    high: tuple[GearPair, Sequence[ContactGrid]]
+    difference: float
 
 
 def require_finite(errors: Any, units: tuple[str, ...]) -> None:

@@ -232,6 +232,7 @@ def _sensitivities(
 ) -> Sensitivities:
     """Derivatives where gears stand alike under all torques."""
     bending, tangents = states.bending, states.tangents(LINEAR)
+    assert bending is None or isinstance(bending, SumOfParts)
     on_supports = result if isinstance(result, UnderOneTorque) else None
     if bending is not None:
         displacement = None if on_supports is None else on_supports.displacement
@@ -247,7 +248,7 @@ def _sensitivities(
         whole = tuple(changes.get(key) for key in keys)
         with_motions = partial(motion_growth, result, tangents, bending)
     else:
-        assert isinstance(bending, SumOfParts)
+        assert bending is not None
         raised = np.array([[NEWTON_MILLIMETRES if key == TORQUE else 0.0] for key in keys])
         on_slices = OnSlices(on_supports, tangents)
         growth, whole = growth_on_supports(on_supports, tangents, bending, on_slices, at, keys, changes, raised)

@@ -11,16 +11,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
-from itertools import combinations, pairwise
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from loaded_tca.compliance.model import BendingModel, SumOfParts
 from loaded_tca.contact.cuts import crowding_growth
-from loaded_tca.edges.free import MovedSlices, edge_deflection_growth
-from loaded_tca.loaded.force_lines import LoadedSlices
-from loaded_tca.pairs.gear_pair import cylindrical_basis
+from loaded_tca.edges.free import edge_deflection_growth
+from loaded_tca.edges.places import dilated
+from loaded_tca.pairs.gear_pair import MovedSlices, cylindrical_basis
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.slice_pressure import JUMP
 from loaded_tca.separation import Separation
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from loaded_tca.arrays import Array, Indices, Mask
+    from loaded_tca.compliance.model import BendingPart
     from loaded_tca.loaded.loaded_grid import LoadedGrid
     from loaded_tca.loaded.sensitivity import Tangents
     from loaded_tca.pairs.gear_pair import GearPair
@@ -112,18 +112,21 @@ class GapGrowth:
 
         return replace(self._with(spread), kinks=None if self.kinks is None else self.kinks._with(spread))
 
-    def with_sides(self, kinked: Sequence[int], sides: GapGrowth) -> GapGrowth:
-        """The same, of keys that have kinks the mean of both sides: those by growing values, and then by falling ones.
+    def with_sides_joined(self, kinked: Sequence[int], count: int) -> GapGrowth:
+        """The same of ``count`` keys, some of which have kinks.
 
-        The derivative of a figure is the mean, too, and on the sides it is more or less than that by half the kink.
+        Rows of this growth are the keys without kinks, then those with kinks by growing values, and by falling ones.
+        The derivative of a figure is the mean of both, and on the sides it is more or less than that by half the kink.
         """
-        half, rows = len(kinked), list(kinked)
-        apart = sides._with(lambda values: values[:half] - values[half:]).at_keys(rows, len(self.turns))
-        whole = self._with(np.copy)
-        for name in ARRAYS:
-            both = getattr(sides, name)
-            getattr(whole, name)[rows] = 0.5 * (both[:half] + both[half:])
-        return replace(whole, kinks=apart)
+        half, others = len(kinked), [key for key in range(count) if key not in kinked]
+
+        def joined(values: Array) -> Array:
+            rows, sides = np.empty((count, *values.shape[1:])), values[len(others) :]
+            rows[others], rows[list(kinked)] = values[: len(others)], 0.5 * (sides[:half] + sides[half:])
+            return rows
+
+        apart = self._with(lambda values: values[len(others) :][:half] - values[len(others) :][half:])
+        return replace(self._with(joined), kinks=apart.at_keys(kinked, count))
 
 
 ARRAYS = tuple(one.name for one in fields(GapGrowth) if one.name != "kinks")
@@ -132,7 +135,7 @@ ARRAYS = tuple(one.name for one in fields(GapGrowth) if one.name != "kinks")
 def gap_growth(
     result: CycleNumbers,
     tangents: Tangents,
-    bending: BendingModel | None,
+    bending: BendingPart | None,
     places: tuple[Array, ...],
     changes: Sequence[PairChange],
 ) -> GapGrowth:
@@ -143,7 +146,7 @@ def gap_growth(
     result : MeshCycle
     tangents : Tangents
         Of all states.
-    bending : BendingModel or None
+    bending : BendingPart or None
     places : three (grids,) arrays
         Torque, position and pair of each grid.
     changes : sequence of PairChange
@@ -152,28 +155,34 @@ def gap_growth(
         none = np.zeros((0, tangents.state.size))
         motions, tilts = (np.zeros((*none.shape, count)) for count in (OF_GRIDS, 2))
         return GapGrowth(np.zeros((0, tangents.grid.size)), none, motions, none, tilts, tilts)
-    pair, of_pairs = result.gear_pair, (result, tangents, bending, places)
-    growth, at_one_place = _growth(*of_pairs, changes)
-    kinked = [
-        key
-        for key, change in enumerate(changes)
-        if not change.of_modifications and (at_one_place[key] or change.has_kink_at(pair))
-    ]
-    if not kinked:
-        return growth
-    sides = zip(*(changes[key].to_sides_of(pair) for key in kinked), strict=True)
-    by_sides, _ = _growth(*of_pairs, [change for side in sides for change in side])
-    return growth.with_sides(kinked, by_sides)
+    pair = result.gear_pair
+    if not (kinked := _keys_with_kinks(pair, tangents.grids, changes)):
+        return _growth(result, tangents, bending, places, changes)
+    others = [change for key, change in enumerate(changes) if key not in kinked]
+    growing, falling = zip(*(changes[key].to_sides_of(pair) for key in kinked), strict=True)
+    growth = _growth(result, tangents, bending, places, [*others, *growing, *falling])
+    return growth.with_sides_joined(kinked, len(changes))
+
+
+def _keys_with_kinks(pair: GearPair, grids: Sequence[LoadedGrid], changes: Sequence[PairChange]) -> list[int]:
+    """Keys by which edges of both gears at one place part, or the wheel moves otherwise to either side."""
+    if not (moving := [key for key, change in enumerate(changes) if not change.of_modifications]):
+        return []
+    cells = [grid.pressed & dilated(grid.separation.cover < 1.0) for grid in grids]
+    contacts, separations = [grid.contact for grid in grids], [grid.separation for grid in grids]
+    held = contact_changes(pair, contacts, separations, cells, [changes[key] for key in moving])
+    parts = zip(moving, held.border.has_kinks.tolist(), strict=True)
+    return [key for key, at_one_place in parts if at_one_place or changes[key].has_kink_at(pair)]
 
 
 def _growth(
     result: CycleNumbers,
     tangents: Tangents,
-    bending: BendingModel | None,
+    bending: BendingPart | None,
     places: tuple[Array, ...],
     changes: Sequence[PairChange],
-) -> tuple[GapGrowth, Mask]:
-    """Growth with each change, and by which of them edges of both gears at one place part."""
+) -> GapGrowth:
+    """Growth with each change, without kinks."""
     pair, grids, (_, positions, pairs) = result.gear_pair, tangents.grids, places
     separations, count = [grid.separation for grid in grids], len(changes)
     # contacts are traced at the middles of their ways, from where the pinion goes on
@@ -206,8 +215,7 @@ def _growth(
     motions, turned_back, tilts, shifts = (
         values[:count] for values in (growth.motions, points.turns, points.tilts, points.shifts)
     )
-    whole = GapGrowth(gaps[:count], lever_torques[:count], motions, turned_back, tilts, shifts)
-    return whole, held.border.has_kinks[:count]
+    return GapGrowth(gaps[:count], lever_torques[:count], motions, turned_back, tilts, shifts)
 
 
 NO_WAY = 1e-12
@@ -241,7 +249,7 @@ def _first_rotations(tangents: Tangents, opened: Array, lever_torques: Array) ->
 def _add_displaced(
     result: CycleNumbers,
     tangents: Tangents,
-    bending: BendingModel | None,
+    bending: BendingPart | None,
     changes: Sequence[PairChange],
     growth: MovedContacts,
     shifts: Array,
@@ -316,7 +324,7 @@ class MotionGrowth:
 def motion_growth(
     result: CycleNumbers,
     tangents: Tangents,
-    bending: BendingModel | None,
+    bending: BendingPart | None,
     displaced: Callable[[Array, float], Array] | None = None,
 ) -> MotionGrowth:
     """Growth with the motions of the grids.
@@ -325,7 +333,7 @@ def motion_growth(
     ----------
     result : MeshCycle
     tangents : Tangents
-    bending : BendingModel or None
+    bending : BendingPart or None
     displaced : callable, optional
         Growth of the displacement of the active cells (n,) beside that of the teeth by motions (grids, 6) of the grids,
         with a step of these [mm]; default: there is none.
@@ -397,7 +405,7 @@ def moved(grid: Grid, motion: Array) -> Grid:
 def _add_moved_lines(
     pair: GearPair,
     tangents: Tangents,
-    bending: BendingModel | None,
+    bending: BendingPart | None,
     changes: Sequence[PairChange],
     growth: MovedContacts,
     shifts: Array,
@@ -415,6 +423,7 @@ def _add_moved_lines(
     slices = (
         slices + (np.cumsum([one.y.size for one in separations]) - [one.y.size for one in separations])[tangents.grid]
     )
+    forces = np.concatenate([grid.slice_force for grid in grids])
     if free_edges:
         lines = motions.copy()
         lines[..., 0] = shifts[..., 0]
@@ -424,30 +433,16 @@ def _add_moved_lines(
             if not change.of_modifications or lines[key].any()
         }
         if steps:
-            forces = np.concatenate([grid.slice_force for grid in grids])
             gaps[[*steps]] += edge_deflection_growth(pair, separations, forces, [*steps.values()])[:, slices]
-    for key, change in enumerate(changes):
-        if bending is not None and not change.of_modifications:
-            moves = motions[key].any(axis=-1) | (change.below is not change.above)
-            low, high = (
-                _bent(tangents, bending.mounted(gears) if isinstance(bending, SumOfParts) else bending, there, moves)
-                for gears, there in _on_both_sides(change, separations, motions[key])
-            )
-            gaps[key] += ((high - low) / change.difference)[slices]
+    moving = [key for key, change in enumerate(changes) if not change.of_modifications]
+    if bending is not None and moving:
+        contacts = [(grid.number, grid.separation) for grid in grids]
+        moved_slices = [_moved_slices(pair, changes[key], separations, motions[key]) for key in moving]
+        gaps[moving] += bending.deflection_growth(contacts, tangents.state, forces, moved_slices)[:, slices]
     others = [key for key, change in enumerate(changes) if change.of_modifications]
     if tangents.by_shift is not None and others:
         across = np.repeat(motions[others][..., 0], [one.y.size for one in separations], axis=1)
         gaps[others] += (tangents.by_shift @ across.T).T[:, slices]
-
-
-def _on_both_sides(
-    change: PairChange, separations: Sequence[Separation], motions: Array
-) -> list[tuple[GearPair, list[Separation]]]:
-    """Pairs of gears that a key changes, and grids that it moves (grids, 6), below and above."""
-    return [
-        (gears, [moved(one, part * change.difference * by) for one, by in zip(separations, motions, strict=True)])
-        for gears, part in ((change.below, -0.5), (change.above, 0.5))
-    ]
 
 
 def _moved_slices(pair: GearPair, change: PairChange, separations: Sequence[Separation], motions: Array) -> MovedSlices:
@@ -458,34 +453,11 @@ def _moved_slices(pair: GearPair, change: PairChange, separations: Sequence[Sepa
     if change.of_modifications:
         width = min(min(one.spacing) for one in separations)
         change = replace(change, below=pair, above=pair, difference=PART_OF_CELL * width / np.abs(motions).max())
-    low, high = _on_both_sides(change, separations, motions)
+    low, high = (
+        (gears, [moved(one, part * change.difference * by) for one, by in zip(separations, motions, strict=True)])
+        for gears, part in ((change.below, -0.5), (change.above, 0.5))
+    )
     return MovedSlices(low, high, change.difference)
-
-
-def _bent(tangents: Tangents, bending: BendingModel, separations: Sequence[Separation], moves: Mask) -> Array:
-    """Bending of the slices of all grids, in one row [mm], under the forces as they are, on other grids.
-
-    As far as it has a part in grids that move (grids,).
-    """
-    grids, whole = tangents.grids, [grid.slice_force for grid in tangents.grids]
-    loaded = [np.flatnonzero(force) for force in whole]
-    forces = [force[own] for force, own in zip(whole, loaded, strict=True)]
-    lines = [
-        (grid.number, LoadedSlices.of(one, own)) for grid, one, own in zip(grids, separations, loaded, strict=True)
-    ]
-    deflections = [
-        bending.within(*line) @ force if is_moved else np.zeros(force.size)
-        for line, force, is_moved in zip(lines, forces, moves.tolist(), strict=True)
-    ]
-    for state in np.split(np.arange(len(grids)), np.flatnonzero(np.diff(tangents.state)) + 1):
-        for i, j in combinations(state.tolist(), 2):
-            if moves[i] or moves[j]:
-                between = bending.between(lines[i], lines[j])
-                deflections[i] += between @ forces[j]
-                deflections[j] += between.T @ forces[i]
-    for force, own, bent in zip(whole, loaded, deflections, strict=True):
-        force[own] = bent
-    return np.concatenate(whole)
 
 
 STEP = 1e-3

@@ -28,9 +28,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array, keep_copies
+from loaded_tca.arrays import Array, Indices, keep_copies
 from loaded_tca.errors import require
-from loaded_tca.pairs.gear_pair import ContactGrid, GearPair
+from loaded_tca.pairs.gear_pair import ContactGrid, GearPair, MovedSlices
 from loaded_tca.supports.bearing import AnyBearing
 
 AXIS = np.array([0.0, 0.0, 1.0])
@@ -304,6 +304,44 @@ class SupportCompliance:
             a @ (support.compliance @ (forces @ b)) for a, b, support in zip(there, here, self.supports, strict=True)
         )
         return np.asarray(pinion + wheel)
+
+    def deflection_growth(
+        self,
+        contacts: Sequence[tuple[int, ContactGrid]],
+        state: Indices,
+        forces: Array,
+        moved: Sequence[MovedSlices],
+    ) -> Array:
+        """Growth (keys, n) [mm per unit] of the deflection of slices under forces as they are, as gears and grids move.
+
+        Parameters
+        ----------
+        contacts : sequence of (int, ContactGrid)
+        state : (contacts,) int array
+            That each contact belongs to, state by state.
+        forces : (n,) array [N]
+            On the slices of all contacts, in one row.
+        moved : sequence of MovedSlices
+            With each key, the slices of all contacts.
+        """
+        of_slices, growth = np.repeat(state, [len(grid.y) for _, grid in contacts]), []
+        first, states = np.flatnonzero(np.diff(of_slices, prepend=-1)), np.unique(of_slices, return_inverse=True)[1]
+        here = self._loads_of([grid for _, grid in contacts])
+        for low, high, difference in moved:
+            below, above = (self.mounted(pair)._loads_of(grids) for pair, grids in (low, high))
+            deflection = np.zeros(forces.size)
+            for support, unit, one, other in zip(self.supports, here, below, above, strict=True):
+                grown = (other - one) / difference
+                on_support, more = (np.add.reduceat(forces[:, None] * by, first) for by in (unit, grown))
+                deflection += (grown * (on_support @ support.compliance)[states]).sum(axis=1)
+                deflection += (unit * (more @ support.compliance)[states]).sum(axis=1)
+            growth.append(np.where(forces != 0.0, deflection, 0.0))
+        return np.array(growth).reshape(-1, forces.size)
+
+    def _loads_of(self, grids: Sequence[ContactGrid]) -> tuple[Array, Array]:
+        """Loads (n, 6 m) of both gears as of :meth:`loads`, of the slices of all grids."""
+        pinion, wheel = (np.concatenate(loads) for loads in zip(*map(self.loads, grids), strict=True))
+        return pinion, wheel
 
     def gap_by_motion(self, grid: ContactGrid, motions: Sequence[Array]) -> Array:
         """How far the gap of every slice (ny,) [mm] grows by motions (6 m,) of the stations of both gears."""

@@ -16,6 +16,7 @@ from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.material import Material
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import cylindrical_pair
+from loaded_tca.pairs.gear_pair import MovedSlices
 from loaded_tca.reference.iso6336 import theoretical_single_stiffness
 from loaded_tca.reference.weber_banaschek import ring_torsion
 from loaded_tca.scene import read_scene
@@ -123,6 +124,59 @@ def test_compliance_knows_which_tooth_comes_next(make):
     assert_allclose(compliance.between((7, first), (8, second)), forwards)
     assert_allclose(compliance.between((1, second), (0, first)), forwards.T)
     assert abs(compliance.between((1, first), (0, second)).mean() - forwards.mean()) > 1e-3 * forwards.mean()
+
+
+def bent(compliance, contacts, state, forces):
+    """Deflection of slices under forces on those of all contacts of the same state, by the matrices."""
+    forces, deflections = np.split(forces, np.cumsum([len(grid.y) for _, grid in contacts])[:-1]), []
+    for at, own in zip(contacts, state, strict=True):
+        grown = np.zeros(len(at[1].y))
+        for under, other, force in zip(contacts, state, forces, strict=True):
+            if under[0] == at[0] and own == other:
+                grown += compliance.within(*at) @ force
+            elif own == other and abs(under[0] - at[0]) <= compliance.neighbours:
+                grown += compliance.between(at, under) @ force
+        deflections.append(grown)
+    return np.concatenate(deflections)
+
+
+def turned(pair, shift, turn):
+    """The pair whose wheel has moved [mm] and turned about the axes of the fixed frame [rad]."""
+    x, y, z = turn
+    rotation = np.eye(3) + np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return replace(pair, wheel_origin=pair.wheel_origin + shift, wheel_axes=pair.wheel_axes @ rotation.T)
+
+
+@pytest.mark.quick_cases("helical", "bevel")
+@FAMILIES
+def test_deflection_grows_as_differences_say_where_the_wheel_and_the_grids_move(make, rng):
+    """Lines that run over the tip, a tooth pair too far from the others to couple, slices without force."""
+    compliance, step = make(), 1e-5
+    pair, numbers, state = compliance.pair, (0, 1, 3, 0), np.array([0, 0, 0, 1])
+    known = [*grids(compliance, 0.4, cells=(8, 20)), *grids(compliance, -0.4, 0.1, -0.1, cells=(8, 24), length=4.0)]
+    forces = rng.random(20 + 3 * 24)
+    forces[[3, 25]] = 0.0
+    # of 1 mm and 0.01 rad: by larger ways lines cross places between which the local term is interpolated
+    ways = rng.normal(size=(2, 2, 3)) * [[1.0], [1e-2]]
+    keys = [
+        MovedSlices((turned(pair, *(-0.5 * step * way)), known), (turned(pair, *(0.5 * step * way)), known), step)
+        for way in ways
+    ]
+    shifts = rng.normal(size=(len(known), 3))
+    below, above = (
+        [replace(grid, origin=grid.origin + part * step * way) for grid, way in zip(known, shifts, strict=True)]
+        for part in (-0.5, 0.5)
+    )
+    keys.append(MovedSlices((pair, below), (pair, above), step))
+    found = compliance.deflection_growth([*zip(numbers, known, strict=True)], state, forces, keys)
+    for one, growth in zip(keys, found, strict=True):
+        low, high = (
+            bent(compliance.mounted(gears), [*zip(numbers, map(replace, there), strict=True)], state, forces)
+            for gears, there in (one.low, one.high)
+        )
+        expected = np.where(forces > 0.0, (high - low) / step, 0.0)
+        # the deflection is known to 1e-15 of its 1e-5 mm, and differences over 1e-5 mm leave the square of that
+        assert_allclose(growth, expected, rtol=0, atol=1e-6 * np.abs(expected).max())
 
 
 @pytest.mark.thorough

@@ -3,7 +3,12 @@ import math
 import numpy as np
 from numpy.testing import assert_allclose
 
-from loaded_tca.compliance.flexibility import depth_displacement, depth_displacement_slope, line_force
+from loaded_tca.compliance.flexibility import (
+    depth_displacement,
+    depth_displacement_by_depth,
+    depth_displacement_slope,
+    line_force,
+)
 from loaded_tca.material import Material
 
 STEEL = Material()
@@ -38,6 +43,13 @@ def test_displacement_at_a_depth_falls_with_the_square_of_the_distance_as_its_di
     square, depth = np.array([0.01, 0.5, 1.0, 9.0]), 2.3
     low, high = (depth_displacement(np.asarray(depth), np.sqrt(square + by), STEEL) for by in (-STEP, STEP))
     assert_allclose(depth_displacement_slope(depth, square, STEEL), (high - low) / (2.0 * STEP), rtol=DIFFERENCES)
+
+
+def test_displacement_changes_with_the_depth_as_its_differences_say():
+    distance, depth = np.array([[0.1], [0.7], [1.0], [3.0]]), np.array([0.4, 2.3])
+    low, high = (depth_displacement(depth + by, distance, STEEL) for by in (-STEP, STEP))
+    found = depth_displacement_by_depth(depth, distance, STEEL)
+    assert_allclose(found, (high - low) / (2.0 * STEP), rtol=0, atol=DIFFERENCES * np.abs(found).max())
 
 
 def test_line_force_is_a_line_of_point_forces():

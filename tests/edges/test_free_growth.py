@@ -8,7 +8,8 @@ import numpy as np
 from numpy.testing import assert_allclose
 
 from loaded_tca import read_scene, sample_separation, trace_contact
-from loaded_tca.edges.free import MovedSlices, edge_compliance, edge_deflection_growth
+from loaded_tca.edges.free import edge_compliance, edge_deflection_growth
+from loaded_tca.pairs.gear_pair import MovedSlices
 from loaded_tca.separation.pair_change import pair_changes
 from tests.samples.results import SCENES
 

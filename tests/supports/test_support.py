@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from loaded_tca import parse_scene
 from loaded_tca.arrays import Array
 from loaded_tca.cli import DEMO_SCENE
 from loaded_tca.errors import InputError
-from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.pairs.gear_pair import GearPair, MovedSlices
 from loaded_tca.supports import Support, SupportCompliance, moved_pair
 from loaded_tca.supports.support import rotation
 
@@ -114,6 +114,42 @@ def test_gap_grows_by_the_way_of_the_points_along_the_normal(pair: GearPair) -> 
     turned = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1e-3])  # about the axis: the lever of the normal force
     lever = np.cross(grid.origin - pair.wheel_origin, normal)[2]
     assert_allclose(part.gap_by_motion(grid, [np.zeros(6), turned]), 1e-3 * lever * pair.wheel_axes[2, 2], rtol=1e-9)
+
+
+def test_deflection_grows_as_differences_say_where_the_wheel_and_the_slices_move(pair: GearPair) -> None:
+    """Two contacts of one state and one of another; a slice without force is left out."""
+    step, rng = 1e-4, np.random.default_rng(11)
+    supports = (Support(1.0, random_matrix(6, 3)), Support(-2.0, random_matrix(18, 4), np.array([-10.0, 0.0, 12.0])))
+    compliance = SupportCompliance(pair, supports, np.stack([np.eye(3), pair.wheel_axes]))
+    normals = [np.array([np.sin(tilt), np.cos(tilt), 0.0]) for tilt in (0.3, 0.5, 0.4)]
+    places = [np.array([35.0, 2.0 * n, 1.0]) for n in range(3)]
+    contacts = [(n, slices_at(*where)) for n, where in enumerate(zip(places, normals, strict=True))]
+    state, forces, ways = np.array([0, 0, 1]), rng.random(15), rng.normal(size=(4, 3))
+    forces[7] = 0.0
+
+    def side(part: float) -> tuple[GearPair, list[Slices]]:
+        gears = replace(pair, wheel_origin=pair.wheel_origin + part * step * ways[3])
+        slices = [
+            replace(one, origin=one.origin + part * step * way) for (_, one), way in zip(contacts, ways, strict=False)
+        ]
+        return gears, slices
+
+    def deflection(gears: GearPair, slices: list[Slices]) -> Array:
+        there, (first, second, third) = compliance.mounted(gears), np.split(forces, 3)
+        one, two, three = enumerate(slices)
+        return np.concatenate(
+            [
+                there.deflection(one, one, first) + there.deflection(one, two, second),
+                there.deflection(two, one, first) + there.deflection(two, two, second),
+                there.deflection(three, three, third),
+            ]
+        )
+
+    low, high = side(-0.5), side(0.5)
+    expected = np.where(forces > 0.0, (deflection(*high) - deflection(*low)) / step, 0.0)
+    (found,) = compliance.deflection_growth(contacts, state, forces, [MovedSlices(low, high, step)])
+    # bilinear in the ways of both: the differences are rounded to 1e-16 of the deflection over the step
+    assert_allclose(found, expected, rtol=0, atol=1e-8 * np.abs(expected).max())
 
 
 def test_moved_pair_keeps_distances_where_both_gears_move_as_one_body(pair: GearPair) -> None:
