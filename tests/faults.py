@@ -4060,6 +4060,27 @@ FAULTS = (
         "return self.grid_warnings",
         "contact/test_solution.py::test_peak_that_two_grids_do_not_agree_on_is_warned_of",
     ),
+    Fault(
+        "contacts alone: Hertz is drawn in the middle of the grid, wherever the contact lies",
+        "plots/solution.py",
+        "centre = float(by_x @ x), float(by_y @ y)",
+        "centre = 0.0, 0.0",
+        "plots/test_solution.py::test_hertz_lies_where_the_contact_lies",
+    ),
+    Fault(
+        "contacts alone: Hertz is drawn along the axes of the grid, however the contact is turned",
+        "plots/solution.py",
+        "angle = 0.5 * math.atan2(-2.0 * xy, yy - xx)",
+        "angle = 0.0",
+        "plots/test_solution.py::test_hertz_lies_where_the_contact_lies",
+    ),
+    Fault(
+        "contacts alone: the sections run through the first of the highest cells",
+        "plots/solution.py",
+        "np.where(pressed | ~pressed.any(), np.abs(places - at), np.inf).argmin()",
+        "pressure.max(axis=1).argmax()",
+        "plots/test_solution.py::test_sections_are_in_the_middle_where_many_cells_are_highest",
+    ),
 )
 
 
