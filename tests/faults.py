@@ -3249,8 +3249,8 @@ FAULTS = (
     Fault(
         "computed tips of planets are those of their mesh with the ring",
         "stages/sections.py",
-        "for pinion, wheel in ((sun, min(sun, ring)), (min(sun, ring), ring)):",
-        "for pinion, wheel in ((sun, ring), (ring, ring)):",
+        "((of_sun, sun, min(sun, ring)), (of_ring, min(sun, ring), ring)):",
+        "((of_sun, sun, ring), (of_ring, ring, ring)):",
         "stages/test_tip_shortening.py::test_tips_of_sun_and_planets_keep_the_clearance",
     ),
     Fault(
