@@ -343,8 +343,9 @@ class Tribology(Result):
         Returns
         -------
         pandas.DataFrame
-            A row for each slice; of ``COLUMNS`` those that are known. Pressure is that of the nominal torque; films and
-            flash temperatures take it times the root of K_A K_v.
+            A row for each slice; of ``COLUMNS`` those that are known, their units in ``attrs["units"]``. Pressure is
+            that of the nominal torque; films and flash temperatures take it times the root of K_A K_v. For files,
+            ``to_pandas("slices")`` has the slices of all torques with the units in the heads.
 
         Raises
         ------
@@ -356,7 +357,9 @@ class Tribology(Result):
         self.check(torque, speed)
         some = self.sweep.of_torque(torque)
         columns = {name: self._column(name, speed)[some] for name in COLUMNS if not self._lacking(COLUMNS[name][2])}
-        return pandas.DataFrame(columns)
+        table = pandas.DataFrame(columns)
+        table.attrs["units"] = {name: COLUMNS[name][0] for name in columns}
+        return table
 
     def check(self, torque: int, speed: int) -> None:
         """Refuse indices of a torque and a speed that there are not."""
