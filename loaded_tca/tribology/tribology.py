@@ -343,9 +343,11 @@ class Tribology(Result):
         Returns
         -------
         pandas.DataFrame
-            A row for each slice; of ``COLUMNS`` those that are known, their units in ``attrs["units"]``. Pressure is
-            that of the nominal torque; films and flash temperatures take it times the root of K_A K_v. For files,
-            ``to_pandas("slices")`` has the slices of all torques with the units in the heads.
+            A row for each slice; of ``COLUMNS`` those that are known. Lengths in mm, films in um, line loads and wear
+            in N/mm, pressures in MPa, velocities in m/s, pressure times velocity in MPa m/s, powers in W, flash
+            temperatures in K, contact temperatures in C. Pressure is that of the nominal torque; films and flash
+            temperatures take it times the root of K_A K_v. ``to_pandas("slices")`` has the slices of all torques at the
+            first speed, with the units in its heads, as files have them.
 
         Raises
         ------
@@ -357,9 +359,7 @@ class Tribology(Result):
         self.check(torque, speed)
         some = self.sweep.of_torque(torque)
         columns = {name: self._column(name, speed)[some] for name in COLUMNS if not self._lacking(COLUMNS[name][2])}
-        table = pandas.DataFrame(columns)
-        table.attrs["units"] = {name: COLUMNS[name][0] for name in columns}
-        return table
+        return pandas.DataFrame(columns)
 
     def check(self, torque: int, speed: int) -> None:
         """Refuse indices of a torque and a speed that there are not."""

@@ -259,16 +259,6 @@ def test_the_hottest_films_are_thin_and_known():
     assert (films >= 0.0).all()
 
 
-def test_slices_have_the_units_of_their_files():
-    found = known(shared("mesh_cycle_spur"))
-    units, heads = found.slices().attrs["units"], found.to_pandas("slices").columns
-    assert {*units} == {*found.slices().columns}
-    assert units["line_load"] == "N/mm"
-    assert "line_load_N_per_mm" in heads
-    assert "film_thickness_um" in heads
-    assert units["film_thickness"] == "um"
-
-
 def test_a_scuffing_temperature_names_what_it_lacks():
     with pytest.raises(NotAskedError, match="scuffing_temperature: needs lubricant"):
         _ = shared("mesh_cycle_spur").tribology(1500.0).scuffing_temperature
