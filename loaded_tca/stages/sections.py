@@ -76,6 +76,7 @@ OF_ONE_PITCH = {
     "support": "gears of a stage stand on rigid axes; for the sun give stage.sun_support_stiffness_N_per_um",
 }
 """Sections of a gear that a stage does not have, and why."""
+NOT_OF_STAGES = "found a section; not allowed: {}"
 MOST_PLANETS = 12
 LARGEST_SHIFT = 5.0
 """Of profile shift coefficients, as of those that are given."""
@@ -343,10 +344,7 @@ class Stage(InNotebooks, Section):
             for gear in ("planet", "ring")
         ),
         *(
-            Rule(
-                (f"{gear}.{name}",),
-                lambda given, why=why: None if given is None else f"found a section; not allowed: {why}",
-            )
+            Rule((f"{gear}.{name}",), lambda given, why=why: None if given is None else NOT_OF_STAGES.format(why))
             for gear in MEMBERS
             for name, why in OF_ONE_PITCH.items()
         ),
@@ -666,7 +664,13 @@ def stage_from_table(table: Mapping[str, Any]) -> Stage:
     InputError
         Every problem at once.
     """
-    values, problems, _ = check(Stage, table)
-    if problems:
+    refused, known = [], dict(table)
+    for gear in MEMBERS:
+        if isinstance(section := table.get(gear), Mapping):
+            known[gear] = {name: value for name, value in section.items() if name not in OF_ONE_PITCH}
+            given = (name for name in OF_ONE_PITCH if name in section)  # whose missing keys are nothing to give
+            refused += [f"{gear}.{name}: {NOT_OF_STAGES.format(OF_ONE_PITCH[name])}" for name in given]
+    values, problems, _ = check(Stage, known)
+    if problems := refused + list(problems):
         raise InputError(problems)
     return made(Stage, values)
