@@ -253,7 +253,9 @@ class GearSection(Section):
     @property
     def teeth_differ(self) -> bool:
         """Whether a tooth has another place, or other flanks, than another tooth."""
-        return bool(np.ptp(self.kinds_of_teeth()[0])) or (self.pitch is not None and self.pitch.is_given)
+        if self.tooth and np.ptp(self.kinds_of_teeth()[0]):
+            return True
+        return self.pitch is not None and self.pitch.is_given
 
     @property
     def index_deviations(self) -> tuple[str, ...]:
