@@ -35,7 +35,7 @@ def rough_gap(x: np.ndarray) -> np.ndarray:
 
 def main() -> float:
     """Return the pressure in the middle of the roller over that of an endless one (2710 MPa)."""
-    x, y, z = centres(96, 1.5), centres(192, 20.0), centres(192, 0.9)
+    x, y, z = centres(96, 1.5), centres(384, 20.0), centres(192, 0.9)
     figure = Figure(figsize=(10.0, 7.0), layout="constrained")
     for row, cap in zip(figure.subplots(2, 3), (None, 2500.0), strict=True):
         options = {"contact_modulus": STEEL, "max_pressure": cap}
@@ -50,7 +50,7 @@ def main() -> float:
         figure.colorbar(colours, ax=row[2], label="pressure [MPa]", extend="max")
         row[2].set(title=f"rough ball, peak {rough.peak_pressure:.0f} MPa", xlabel="[mm]", aspect="equal")
         if cap is None:
-            middle = float(roller.pressure[47:49, 95:97].mean())
+            middle = float(roller.pressure[47:49, 191:193].mean())
     figure.savefig("contact_from_arrays.png", dpi=120)
     return middle / hertz.line_contact(2000.0, 0.1, STEEL).max_pressure
 

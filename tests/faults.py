@@ -1369,8 +1369,8 @@ FAULTS = (
     Fault(
         "slope jumps: no warning under a cap that is not reached",
         "contact/solution.py",
-        "float(self.pressure.max()) < (self.problem.max_pressure or math.inf)",
-        "self.problem.max_pressure is None",
+        "if self.slope_jump > 0.0 and not self.reaches_cap:",
+        "if self.slope_jump > 0.0 and self.problem.max_pressure is None:",
         "contact/test_slope_jumps.py::test_cap_that_is_reached_limits_the_pressure_of_a_jump",
     ),
     Fault(
@@ -3249,8 +3249,8 @@ FAULTS = (
     Fault(
         "computed tips of planets are those of their mesh with the ring",
         "stages/sections.py",
-        "for pinion, wheel in ((sun, min(sun, ring)), (min(sun, ring), ring)):",
-        "for pinion, wheel in ((sun, ring), (ring, ring)):",
+        "((of_sun, sun, min(sun, ring)), (of_ring, min(sun, ring), ring)):",
+        "((of_sun, sun, ring), (of_ring, ring, ring)):",
         "stages/test_tip_shortening.py::test_tips_of_sun_and_planets_keep_the_clearance",
     ),
     Fault(
@@ -4151,6 +4151,34 @@ FAULTS = (
         "np.pad(np.diff(values) / np.diff(heights), 1)",
         'np.pad(np.diff(values) / np.diff(heights), 1, mode="edge")',
         "compliance/test_compliance.py::test_deflection_grows_as_differences_say_where_the_wheel_and_the_grids_move",
+    ),
+    Fault(
+        "contacts alone: an estimated error of the peak pressure is not warned of",
+        "contact/solution.py",
+        "return self.grid_warnings + self.estimate_warnings(LARGE_ERROR)",
+        "return self.grid_warnings",
+        "contact/test_solution.py::test_peak_that_two_grids_do_not_agree_on_is_warned_of",
+    ),
+    Fault(
+        "contacts alone: Hertz is drawn in the middle of the grid, wherever the contact lies",
+        "plots/solution.py",
+        "centre = float(by_x @ x), float(by_y @ y)",
+        "centre = 0.0, 0.0",
+        "plots/test_solution.py::test_hertz_lies_where_the_contact_lies",
+    ),
+    Fault(
+        "contacts alone: Hertz is drawn along the axes of the grid, however the contact is turned",
+        "plots/solution.py",
+        "angle = 0.5 * math.atan2(-2.0 * xy, yy - xx)",
+        "angle = 0.0",
+        "plots/test_solution.py::test_hertz_lies_where_the_contact_lies",
+    ),
+    Fault(
+        "contacts alone: the sections run through the first of the highest cells",
+        "plots/solution.py",
+        "np.where(pressed | ~pressed.any(), np.abs(places - at), np.inf).argmin()",
+        "pressure.max(axis=1).argmax()",
+        "plots/test_solution.py::test_sections_are_in_the_middle_where_many_cells_are_highest",
     ),
 )
 

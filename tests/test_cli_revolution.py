@@ -50,6 +50,7 @@ def test_revolution_is_written_with_its_tables_and_pictures(tmp_path, capsys):
     teeth = rows_of(tmp_path / "teeth.csv")
     assert len(teeth) == 17 + 24
     assert teeth[-1]["gear"] == "wheel"
+    assert {float(row["index_deviation_um"]) for row in teeth if row["gear"] == "pinion"} == {0.0}
 
 
 @pytest.mark.parametrize(

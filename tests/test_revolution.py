@@ -241,6 +241,20 @@ def test_largest_of_each_tooth_is_that_of_the_positions_where_it_is_in_mesh():
         assert teeth.peak_pressure.values[1, tooth] == np.nanmax(data.peak_pressure.values[1][rows])
 
 
+def test_index_deviations_of_a_tolerance_class_are_those_that_moved_the_teeth():
+    """Rigid teeth at the pitch point: its pair is set back, if no other comes first."""
+    scene = helical({**CONTACT, "pinion.teeth": 20, "wheel.teeth": 30, "analysis.torques_Nm": [0.0]})
+    turn = revolution_of(scene, "wheel", 1, **{"wheel.pitch.tolerance_class": 7, "wheel.pitch.seed": 4})
+    index = turn.by_tooth("wheel")["index_deviation"]
+    assert index.attrs["units"] == "um"
+    assert np.ptp(index.values) > 10.0
+    assert not turn.by_tooth("pinion")["index_deviation"].values.any()
+    alike = revolution_of(scene, 1, 1).error_um()[0]  # of modified flanks whose teeth stand where they should
+    sooner = turn.error_um() - alike + index.values[turn.at_position("wheel_tooth")]
+    assert sooner.min() > -1e-6
+    assert (sooner < 1e-6).mean() > 0.5
+
+
 def test_revolution_comes_back_from_its_file(tmp_path):
     turn = small_turn()
     turn.save(tmp_path / "turn.nc")

@@ -11,6 +11,10 @@ from loaded_tca.scene.variants import has_halves
 from loaded_tca.stages.files import is_stage_file
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from matplotlib.figure import Figure
+
     from loaded_tca.output.overview_text import Overview
     from loaded_tca.scene import Scene
 
@@ -23,20 +27,26 @@ def check(options: argparse.Namespace) -> None:
         check_place(options.out)
     if is_stage_file(options.scene):
         from loaded_tca.output.stage_overview import overview_of_stage
+        from loaded_tca.stages.sections import RING_MESH, SUN_MESH
 
         stage = stage_of(options)
         overview = overview_of_stage(stage)
-        scenes: dict[str, Scene] = {f"{PICTURE}_sun": stage.sun_scene, f"{PICTURE}_ring": stage.ring_scene}
+        scenes: dict[str, tuple[Scene, Mapping[str, str]]] = {
+            f"{PICTURE}_sun": (stage.sun_scene, SUN_MESH),
+            f"{PICTURE}_ring": (stage.ring_scene, RING_MESH),
+        }
     else:
         scene = scene_of(options)
-        overview, scenes = _overview_of(scene), {PICTURE: scene}
+        overview, scenes = _overview_of(scene), {PICTURE: (scene, {})}
     written = [*read_otherwise(options.scene)]
     paths = []
     if options.out is not None:
         from loaded_tca.plots import plot_first_look, png_of
         from loaded_tca.results.files import replace_together
 
-        pictures = {f"{name}.png": png_of(plot_first_look(each)) for name, each in scenes.items()}
+        pictures = {
+            f"{name}.png": png_of(_in_words(plot_first_look(each), gears)) for name, (each, gears) in scenes.items()
+        }
         paths = [*replace_together(options.out, pictures)]
     if options.json:
         files = [str(path) for path in paths]
@@ -45,6 +55,18 @@ def check(options: argparse.Namespace) -> None:
     show("\n".join([overview.text, *written]) + "\n" * bool(paths))
     if paths:
         print_files(paths)
+
+
+def _in_words(figure: Figure, gears: Mapping[str, str]) -> Figure:
+    """A picture whose gears have the names of a stage, if they are of one."""
+    from matplotlib.text import Text
+
+    from loaded_tca.stages.sections import words_of
+
+    for text in figure.findobj(Text) if gears else ():
+        assert isinstance(text, Text)
+        text.set_text(words_of(gears, text.get_text()))
+    return figure
 
 
 def _overview_of(scene: Scene) -> Overview:

@@ -15,7 +15,7 @@ from loaded_tca.arrays import Array, count_problems, numbers, real
 from loaded_tca.contact.checks import MOST_CELLS
 from loaded_tca.contact.levels import prolong
 from loaded_tca.contact.problem import ContactProblem
-from loaded_tca.contact.solution import CoarserGrid, ContactSolution
+from loaded_tca.contact.solution import LARGE_ERROR, CoarserGrid, ContactSolution
 from loaded_tca.contact.solver import solve_problem
 from loaded_tca.errors import give_accuracy_warning, require
 from loaded_tca.plain import plain
@@ -84,7 +84,8 @@ def solve_to_accuracy(
     -----
     AccuracyWarning
         If the finest grid allowed does not reach the accuracy; if the accuracy is that of the approach and the
-        estimated error of the peak pressure is above it; and for the accuracy_warnings about the answer.
+        estimated error of the peak pressure is above it; if that error is above 3 % and above the accuracy; and for
+        the other accuracy_warnings about the answer.
 
     Examples
     --------
@@ -118,7 +119,9 @@ def solve_to_accuracy(
     except StopIteration as end:
         solution, error, of_approach = end.value
     if warn:
-        for sentence in _missed(solution, error, of_approach, accuracy) + solution.accuracy_warnings:
+        missed = _missed(solution, error, of_approach, accuracy)
+        of_peak = missed or solution.estimate_warnings(max(accuracy, LARGE_ERROR))
+        for sentence in of_peak + solution.grid_warnings:
             give_accuracy_warning(sentence)
     return solution
 

@@ -119,7 +119,7 @@ def solve_contact(
     -----
     AccuracyWarning
         If the contact reaches the border of the grid or an end of the material, if the slope of the gap jumps inside
-        it, or if it is fewer than 8 cells across.
+        it, if it is fewer than 8 cells across, or if the estimated error of its peak pressure is above 3 %.
 
     Examples
     --------

@@ -82,6 +82,7 @@ def scene_sections(scene: Scene, positions: int | None = None) -> dict[str, list
         "ISO 6336": [*_standard_rows(scene, pair)],
         "strength and rating": [*_strength_rows(scene)],
         "mounting errors, edges and modifications": [*_departures(scene)],
+        "pitch deviations": [*_pitch_rows(scene, pair)],
         "flanks described by points": [*_spline_rows(scene, pair)],
     }
 
@@ -208,6 +209,19 @@ def _departures(scene: Scene) -> Iterator[Row]:
         for edge, radius in (("tip", gear.tip_rounding_mm), ("side", gear.side_rounding_mm)):
             yield f"{name}.{edge}_rounding_mm", f"{plain(radius, 6)}" if radius else "sharp"
         yield from _changed(gear.modifications, f"{name}.modifications.") or [(f"{name}.modifications", "none")]
+
+
+def _pitch_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
+    """Single and cumulative pitch deviations of index deviations, along the line of action as these; and runout.
+
+    Of a tolerance class of ISO 1328-1 as they are drawn at random: its tolerances times cos(alpha_t).
+    """
+    parts = "f_p_um", "F_p_um", "runout_um"
+    for name, gear, teeth in zip(GEARS, (scene.pinion, scene.wheel), scene.tooth_deviations(pair), strict=True):
+        if gear.pitch is not None and gear.pitch.is_given:
+            single, total = np.abs(teeth.index - np.roll(teeth.index, 1)).max(), np.ptp(teeth.index)
+            label = Label(f"{name}: f_p, F_p at base circle, runout [um]", f"{name}_pitch", *parts)
+            yield label, *(fixed(1e3 * float(size), 2) for size in (single, total, 2.0 * teeth.eccentricity))
 
 
 def _spline_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:

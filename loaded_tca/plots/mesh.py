@@ -171,7 +171,7 @@ def draw_teeth_in_mesh(axes: Axes, scene: CylindricalScene) -> None:
         axes.fill(*one.outline(width, 6.0 * module), facecolor=fill, edgecolor=line, linewidth=1.2, label=teeth)
         _draw_circles(axes, one, line, width)
     _draw_path(axes, mesh, side)
-    _draw_clearances(axes, mesh, gears)
+    _draw_clearances(axes, mesh, gears, side)
     axes.set(xlim=(-width, width), ylim=_ends(mesh), aspect="equal")
     axes.set_xlabel("from the line of centres [mm]")
     axes.set_ylabel("from the pitch point, towards the wheel [mm]")
@@ -244,8 +244,14 @@ def _draw_path(axes: Axes, mesh: CylindricalMesh | InternalMesh, side: float) ->
     axes.plot(*at(path.C + touching * path.AD), linestyle="none", zorder=5.0, label="flanks touch", **about)
 
 
-def _draw_clearances(axes: Axes, mesh: CylindricalMesh | InternalMesh, gears: tuple[_Drawn, _Drawn]) -> None:
-    """Both tip clearances on the line of centres, and the backlash behind the tooth of the pinion that touches."""
+def _draw_clearances(
+    axes: Axes, mesh: CylindricalMesh | InternalMesh, gears: tuple[_Drawn, _Drawn], side: float
+) -> None:
+    """Both tip clearances on the line of centres, and the backlash behind the tooth of the pinion that touches.
+
+    Clearances are written beside the line of centres where the path of contact is not: above the pitch point the path
+    is on the left where ``side`` is +1.
+    """
     about: dict[str, Any] = {
         "textcoords": "offset points",
         "va": "center",
@@ -256,7 +262,10 @@ def _draw_clearances(axes: Axes, mesh: CylindricalMesh | InternalMesh, gears: tu
     for one, other, clearance in zip(gears, gears[::-1], mesh.tip_clearances, strict=True):
         ends = one.axis + one.up * one.gear.root_radius, other.axis + other.up * other.gear.tip_radius
         axes.plot([0.0, 0.0], ends, color="black", linewidth=2.0, solid_capstyle="butt", zorder=5.0)
-        axes.annotate(f"c = {clearance:.3f} mm", (0.0, sum(ends) / 2.0), (6.0, 0.0), **about)
+        middle = sum(ends) / 2.0
+        right = side * middle > 0.0
+        text = (6.0 if right else -6.0, 0.0)
+        axes.annotate(f"c = {clearance:.3f} mm", (0.0, middle), text, ha="left" if right else "right", **about)
     pinion = gears[0]
     back = np.array([2.0 * pinion.middle + math.copysign(0.5 * mesh.backlash / pinion.working_radius, pinion.middle)])
     x, y = pinion.places(np.array([pinion.working_radius]), back)

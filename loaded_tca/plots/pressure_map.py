@@ -207,10 +207,13 @@ def scale_factor(length: float, width: float) -> tuple[float, float]:
 
 LINES = 8
 DEEPEST_DRAWN = 0.1
+WIDTH_in, AROUND_in = 7.2, 2.6
+"""Width of the section of a stress, and height of what stands above and below it."""
+OF_FIRST_AXIS = "first axis, from the middle of the grid [mm]"
 
 
 def plot_subsurface(stress: SubsurfaceStress, quantity: Quantity = "max_shear", column: int | None = None) -> Figure:
-    """Depth against the direction across the contact, in the plane that holds the largest value.
+    """Depth against the first axis of the grid of a pressure, in the plane that holds the largest value.
 
     Parameters
     ----------
@@ -218,7 +221,7 @@ def plot_subsurface(stress: SubsurfaceStress, quantity: Quantity = "max_shear", 
         At two depths at least.
     quantity : {"max_shear", "von_mises"}
     column : int, optional
-        Index along the contact of another plane.
+        Index along the second axis of another plane.
 
     Returns
     -------
@@ -244,18 +247,19 @@ def plot_subsurface(stress: SubsurfaceStress, quantity: Quantity = "max_shear", 
     largest = float(values[:, :, column].max())
     order = np.argsort(stress.depths)
     across = (np.arange(values.shape[1]) - 0.5 * (values.shape[1] - 1)) * stress.spacing[0]
-    figure = Figure(figsize=(8.0, 5.5), layout="compressed")
+    ratio = float(np.ptp(stress.depths) / np.ptp(across))
+    figure = Figure(figsize=(8.0, min(AROUND_in + WIDTH_in * ratio, 6.5)), layout="compressed")
     axes = figure.add_subplot()
     norm, section = Normalize(0.0, largest), values[order, :, column]
     filled = axes.contourf(across, stress.depths[order], section, 4 * LINES, cmap=COLOURS, norm=norm)
     axes.contour(across, stress.depths[order], section, LINES, colors="white", linewidths=0.5)
-    figure.colorbar(filled, ax=axes, label=f"{NAMES[quantity]} [MPa]")
+    figure.colorbar(filled, ax=axes, location="bottom", label=f"{NAMES[quantity]} [MPa]", aspect=50.0)
     depth = depth_of_largest(stress.depths, values[:, row, column])
     label = f"{plain(largest)} MPa at a depth of {plain(depth, 3)} mm"
     axes.plot(across[row], depth, "+", color=ACCENT, markersize=10.0, label=label)
     axes.invert_yaxis()
-    axes.set_aspect("equal" if np.ptp(stress.depths) > DEEPEST_DRAWN * np.ptp(across) else "auto")
-    axes.set_xlabel("across the contact, from the middle of the grid [mm]")
+    axes.set_aspect("equal" if ratio > DEEPEST_DRAWN else "auto")
+    axes.set_xlabel(OF_FIRST_AXIS)
     axes.set_ylabel("depth [mm]")
     figure.legend(loc="outside lower center", fontsize="small")
     figure.suptitle(f"Below the surface: {NAMES[quantity]}, Poisson's ratio {plain(stress.poisson_ratio, 6)}")
@@ -281,6 +285,7 @@ def plot_stress_below(below: StressBelow, quantity: Quantity = "max_shear") -> F
         For another quantity.
     """
     figure = plot_subsurface(below.stress, quantity, below.beside_spike)
+    figure.axes[0].set_xlabel("across the contact, from the middle of the grid [mm]")
     set_title(figure, below.result, f"below the surface: {NAMES[quantity]}", *below.where)
     return figure
 

@@ -43,6 +43,7 @@ REVOLUTION_FILE = "revolution.nc"
 ALIKE = 1e-6
 """Relative difference of numbers of two tooth pairs that are alike: states a pitch apart, on the same grids, are solved
 to rounding and to the tolerance of the balance."""
+INDEX_DEVIATION = {"units": "um", "long_name": "index deviation of a tooth, along the transverse line of action"}
 SIDEBANDS = 5
 """Orders of a gear beside a mesh order that are named its sidebands."""
 
@@ -387,12 +388,15 @@ class Revolution(OverTurns):
         xarray.Dataset
             Over ``torque`` and ``tooth``: ``load_share``, ``normal_force`` [N] and ``peak_pressure`` [MPa], the largest
             of each tooth, and ``pinion_angle`` [rad] where the pressure is highest; NaN of teeth that carry nothing.
+            Over ``tooth``: ``index_deviation`` [um], of the scene or drawn at random for its tolerance class; positive:
+            the flank is set back from its mating flank.
         """
         import xarray
 
         require((gear in GEARS, f"gear: {gear!r:.60} is not 'pinion' or 'wheel'"))
         tooth = self.dataset[f"{gear}_tooth"].values.ravel()
-        count, torques = self.teeth[GEARS.index(gear)], len(self.torque)
+        number, torques = GEARS.index(gear), len(self.torque)
+        count = self.teeth[number]
         names = "load_share", "normal_force", "peak_pressure"
         values = {name: self.dataset[name].values.reshape(torques, -1) for name in names}
         loaded = values["normal_force"] > 0.0
@@ -407,9 +411,18 @@ class Revolution(OverTurns):
         where = np.full((torques, count), np.nan)
         for t, k in zip(*np.nonzero(values["peak_pressure"] == largest["peak_pressure"][:, tooth]), strict=True):
             where[t, tooth[k]] = np.fmin(where[t, tooth[k]], angle[k])
-        parts = {name: (("torque", "tooth"), array, self.dataset[name].attrs) for name, array in largest.items()}
+        parts: dict[str, Any] = {
+            name: (("torque", "tooth"), array, self.dataset[name].attrs) for name, array in largest.items()
+        }
         parts["pinion_angle"] = (("torque", "tooth"), where, self.dataset["pinion_angle"].attrs)
+        parts["index_deviation"] = (("tooth",), 1e3 * self._index_deviations[number], INDEX_DEVIATION)
         return xarray.Dataset(parts, {"torque": self.torque, "tooth": np.arange(count)})
+
+    @cached_property
+    def _index_deviations(self) -> tuple[Array, Array]:
+        """Index deviations [mm] of the teeth of pinion (z1,) and wheel (z2,)."""
+        pinion, wheel = self.scene.tooth_deviations(self.scene.pair())
+        return pinion.index, wheel.index
 
     def tables(self) -> dict[str, Callable[[], Columns]]:
         """Tables of the revolution by their names; those of teeth and orders, too."""
@@ -472,16 +485,16 @@ def open_turns(scene: Scene, pitches: int) -> list[str]:
 
 
 def teeth_table(revolution: Revolution) -> Columns:
-    """A row for each torque, gear and tooth of a revolution: the largest share, force and pressure of the tooth."""
-    columns: dict[str, list[object]] = {
-        name: [] for name in ("pinion_torque_Nm", "gear", "tooth", "load_share", "normal_force_N", "peak_pressure_MPa")
-    }
+    """A row for each torque, gear and tooth of a revolution: index deviation, largest share, force and pressure."""
+    names = "load_share", "normal_force_N", "peak_pressure_MPa", "index_deviation_um"
+    columns: dict[str, list[object]] = {name: [] for name in ("pinion_torque_Nm", "gear", "tooth", *names)}
     for t, torque in enumerate(revolution.torque):
         for gear in GEARS:
             teeth = revolution.by_tooth(gear)
             count = teeth.sizes["tooth"]
             parts = [[1e-3 * torque] * count, [gear] * count, range(count)]
             parts += [teeth[name].values[t] for name in ("load_share", "normal_force", "peak_pressure")]
+            parts.append([*teeth["index_deviation"].values])
             for column, values in zip(columns.values(), parts, strict=True):
                 column.extend(values)
     return Columns(columns, ("pinion_torque_Nm", "gear", "tooth"))

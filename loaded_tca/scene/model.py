@@ -319,8 +319,9 @@ class Scene(InNotebooks, WithStandards, ABC):
 
     @property
     def has_pitch_deviations(self) -> bool:
-        """Whether the teeth of a gear stand beside their places, or have flanks of their own."""
-        return any(gear.teeth_differ for gear in (self.pinion, self.wheel))
+        """Whether the teeth of a gear stand beside their places, or have flanks that are not those of the gear."""
+        gears = self.pinion, self.wheel
+        return any(gear.teeth_differ or (gear.tooth and gear.kinds_of_teeth()[0].any()) for gear in gears)
 
     def tooth_flanks(self) -> ToothFlanks | None:
         """Return which teeth have flanks of their own, and the gears with them; None if all are alike.

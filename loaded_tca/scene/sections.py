@@ -252,8 +252,10 @@ class GearSection(Section):
 
     @property
     def teeth_differ(self) -> bool:
-        """Whether a tooth has a place or flanks of its own."""
-        return bool(self.tooth) or (self.pitch is not None and self.pitch.is_given)
+        """Whether a tooth has another place, or other flanks, than another tooth."""
+        if self.tooth and np.ptp(self.kinds_of_teeth()[0]):
+            return True
+        return self.pitch is not None and self.pitch.is_given
 
     @property
     def index_deviations(self) -> tuple[str, ...]:
@@ -268,10 +270,12 @@ class GearSection(Section):
         return tuple(f"{key}.form" for key, flank in flanks if flank is not None and flank.form == "measured")
 
     def kinds_of_teeth(self) -> tuple[Indices, list[dict[str, Section]]]:
-        """Kind of every tooth (teeth,), 0 where it is as the others, and the sections that each kind has of its own."""
+        """Kind of every tooth (teeth,), 0 where it is as the gear, and the sections that each kind has of its own."""
         kinds: list[dict[str, Section]] = [{}]
         of_teeth = np.zeros(abs(self.teeth), dtype=int)
         for tooth in self.tooth or ():
+            if all(getattr(self, name) == section for name, section in tooth.own.items()):
+                continue
             if tooth.own not in kinds:
                 kinds.append(tooth.own)
             of_teeth[tooth.number] = kinds.index(tooth.own)

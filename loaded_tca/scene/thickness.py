@@ -197,7 +197,7 @@ def thickness_rows(mesh: CylindricalMesh | InternalMesh, own: tuple[MeasuredSect
         ("tip alteration coefficient k", *(fixed(one, 4) for one in alterations)),
         ("tooth thickness s_n [mm]", *(fixed(gear.normal_tooth_thickness, 4) for gear in gears)),
         (Label(f"span W_k over k teeth{' (spaces)' if internal else ''} [mm]", "span"), *(span for span, _ in spans)),
-        *((f"  none of the {name}", why) for name, (_, why) in zip(GEARS, spans, strict=True) if why),
+        *((f"  no span W_k of the {name}", why) for name, (_, why) in zip(GEARS, spans, strict=True) if why),
     ]
     if any(gear.thickness_allowance for gear in gears):
         rows[1:1] = [

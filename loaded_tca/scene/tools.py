@@ -118,6 +118,11 @@ class CutSection(MeasuredSection):
         Number(1.0, 89.0), "angle between chamfer and middle of the tooth", None, "45"
     )
 
+    @property
+    def has_own_tip(self) -> bool:
+        """Whether a key of the gear says where its tip is."""
+        return self.topping or self.tip_diameter_mm is not None or self.tip_alteration_coefficient is not None
+
     rules: ClassVar[tuple[Rule, ...]] = (
         *MeasuredSection.rules,
         Rule(("tip_chamfer_mm", "tip_rounding_mm"), _one_edge),
@@ -128,22 +133,15 @@ class CutSection(MeasuredSection):
     )
 
 
-def shortened_once(gears: tuple[str, ...]) -> Rule:
-    """Rule of scenes and stages: a computed tip shortening stands alone; ``gears`` are the sections of gears."""
-    names = "tip_diameter_mm", "tip_alteration_coefficient", "topping"
-    paths = [f"{gear}.{name}" for gear in gears for name in names]
-
-    def complain(shortening: str, *values: Any) -> str | None:
-        beside = [
-            f"{path} = {'true' if value is True else value}"
-            for path, value in zip(paths, values, strict=True)
-            if value is not None and value is not False
-        ]
-        if shortening == "computed" and beside:
-            return f'found "computed" beside {" and ".join(beside)}; give one of them: each says where tips are'
-        return None
-
-    return Rule(("pair.tip_shortening", *paths), complain)
+def _shortened_once(shortening: str, *values: Any) -> str | None:
+    beside = [
+        f"{path} = {'true' if value is True else value}"
+        for path, value in zip(TIPS, values, strict=True)
+        if value is not None and value is not False
+    ]
+    if shortening == "computed" and beside:
+        return f'found "computed" beside {" and ".join(beside)}; give one of them: each says where tips are'
+    return None
 
 
 def needs_stock(protuberance: float | None, stock: float | None) -> str | None:
@@ -161,7 +159,10 @@ def needs_protuberance(angle: float | None, protuberance: float | None) -> str |
     return None if angle is None or protuberance else f"found {plain(angle, 6)}; it needs protuberance_um above 0"
 
 
-SHORTENED_ONCE = shortened_once(GEARS)
+TIPS = tuple(
+    f"{gear}.{name}" for gear in GEARS for name in ("tip_diameter_mm", "tip_alteration_coefficient", "topping")
+)
+SHORTENED_ONCE = Rule(("pair.tip_shortening", *TIPS), _shortened_once)
 """Rule of scenes: a computed tip shortening stands alone."""
 
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar, Literal
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.gears import CylindricalMesh, InternalMesh
 from loaded_tca.gears.involute import profile_shift_sum
@@ -57,7 +58,7 @@ from loaded_tca.scene.section import (
     told_as_written,
 )
 from loaded_tca.scene.sections import FACTOR, Analysis, DIAMETER_mm, ElasticMaterial, LubricantSection
-from loaded_tca.scene.tools import ADDENDUM, DEDENDUM, ROOT_RADIUS, TIP_SHORTENING, shortened_once
+from loaded_tca.scene.tools import ADDENDUM, DEDENDUM, ROOT_RADIUS, TIP_SHORTENING, CutSection
 from loaded_tca.scene.written import Equivalents
 from loaded_tca.stages.kinematics import spacing_problems
 
@@ -75,6 +76,7 @@ OF_ONE_PITCH = {
     "support": "gears of a stage stand on rigid axes; for the sun give stage.sun_support_stiffness_N_per_um",
 }
 """Sections of a gear that a stage does not have, and why."""
+NOT_OF_STAGES = "found a section; not allowed: {}"
 MOST_PLANETS = 12
 LARGEST_SHIFT = 5.0
 """Of profile shift coefficients, as of those that are given."""
@@ -184,6 +186,13 @@ def _planet_between(planet: float | None, sun: float | None, ring: float | None,
     )
 
 
+def _shortens_a_tip(shortening: str, *gears: CutSection) -> str | None:
+    """What is wrong with a computed tip shortening that is none of any gear."""
+    if shortening == "computed" and all(gear.has_own_tip for gear in gears):
+        return 'found "computed" beside a tip of every gear; leave one of them to be computed, or give "none"'
+    return None
+
+
 def _largest_gap(angles: tuple[float, ...]) -> float:
     """Largest angle between neighbouring planets [deg]."""
     turns = sorted(angle % 360.0 for angle in angles)
@@ -218,7 +227,8 @@ class StageGeometry(Section):
     tip_shortening: str = key(
         TIP_SHORTENING,
         '"computed": tips of sun and ring are altered by k of their mesh with the planets (ISO 21771) where that '
-        "shortens them, those of planets by the one that shortens more",
+        "shortens them, those of planets by the one that shortens more; a gear whose section says where its tip is "
+        "keeps that tip",
         "none",
     )
 
@@ -334,14 +344,11 @@ class Stage(InNotebooks, Section):
             for gear in ("planet", "ring")
         ),
         *(
-            Rule(
-                (f"{gear}.{name}",),
-                lambda given, why=why: None if given is None else f"found a section; not allowed: {why}",
-            )
+            Rule((f"{gear}.{name}",), lambda given, why=why: None if given is None else NOT_OF_STAGES.format(why))
             for gear in MEMBERS
             for name, why in OF_ONE_PITCH.items()
         ),
-        shortened_once(MEMBERS),
+        Rule(("pair.tip_shortening", *MEMBERS), _shortens_a_tip),
         Rule(
             ("planet.profile_shift", "sun.profile_shift", "ring.profile_shift", "pair.centre_distance_mm"),
             _planet_between,
@@ -589,14 +596,17 @@ class Stage(InNotebooks, Section):
 
 
 def _shortened(of_sun: CylindricalScene, of_ring: InternalScene) -> tuple[CylindricalScene, InternalScene]:
-    """Scenes of both meshes with tips that keep the clearances; planets are in both."""
+    """Scenes of both meshes with tips that keep the clearances, where gears have none of their own; planets in both."""
     with in_words_of(SUN_MESH):
         sun = of_sun.computed_tip_alteration
     with in_words_of(RING_MESH):
         ring = of_ring.computed_tip_alteration
     changes = []
-    for pinion, wheel in ((sun, min(sun, ring)), (min(sun, ring), ring)):
-        changes.append({"pinion.tip_alteration_coefficient": pinion, "wheel.tip_alteration_coefficient": wheel})
+    for scene, *tips in ((of_sun, sun, min(sun, ring)), (of_ring, min(sun, ring), ring)):
+        sections = zip(GEARS, (scene.pinion, scene.wheel), tips, strict=True)
+        changes.append(
+            {f"{name}.tip_alteration_coefficient": tip for name, gear, tip in sections if not gear.has_own_tip}
+        )
     with in_words_of(SUN_MESH):
         external = of_sun.with_changes(changes[0])
     with in_words_of(RING_MESH):
@@ -654,7 +664,13 @@ def stage_from_table(table: Mapping[str, Any]) -> Stage:
     InputError
         Every problem at once.
     """
-    values, problems, _ = check(Stage, table)
-    if problems:
+    refused, known = [], dict(table)
+    for gear in MEMBERS:
+        if isinstance(section := table.get(gear), Mapping):
+            known[gear] = {name: value for name, value in section.items() if name not in OF_ONE_PITCH}
+            given = (name for name in OF_ONE_PITCH if name in section)  # whose missing keys are nothing to give
+            refused += [f"{gear}.{name}: {NOT_OF_STAGES.format(OF_ONE_PITCH[name])}" for name in given]
+    values, problems, _ = check(Stage, known)
+    if problems := refused + list(problems):
         raise InputError(problems)
     return made(Stage, values)

@@ -343,8 +343,11 @@ class Tribology(Result):
         Returns
         -------
         pandas.DataFrame
-            A row for each slice; of ``COLUMNS`` those that are known. Pressure is that of the nominal torque; films and
-            flash temperatures take it times the root of K_A K_v.
+            A row for each slice; of ``COLUMNS`` those that are known. Lengths in mm, films in um, line loads and wear
+            in N/mm, pressures in MPa, velocities in m/s, pressure times velocity in MPa m/s, powers in W, flash
+            temperatures in K, contact temperatures in C. Pressure is that of the nominal torque; films and flash
+            temperatures take it times the root of K_A K_v. ``to_pandas("slices")`` has the slices of all torques at the
+            first speed, with the units in its heads, as files have them.
 
         Raises
         ------

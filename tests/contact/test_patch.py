@@ -82,6 +82,29 @@ def test_axes_of_a_solved_contact_are_hertz():
     assert_allclose(solution.contact_area, contact.area, rtol=5e-3)
 
 
+@pytest.mark.thorough
+@pytest.mark.quick_cases("8-0.06")
+@pytest.mark.parametrize(("across", "bound"), [(5, 0.15), (8, 0.06), (16, 0.02), (32, 0.005)])
+def test_area_and_axes_of_solved_ellipses_are_as_exact_as_they_say(across, bound):
+    """Beside Hertz; 20 ellipses of any ratio, whose middles lie anywhere in a cell."""
+    generator, errors = np.random.default_rng(across), []
+    while len(errors) < 20:
+        curvatures = 0.1, 0.1 / 10.0 ** generator.uniform(0.0, 3.0)
+        contact = hertz.point_contact(100.0, curvatures, 115e3)
+        cells = across + generator.uniform(0.0, 1.0), 40.0
+        spacing = 2.0 * contact.semi_minor / cells[0], 2.0 * contact.semi_major / cells[1]
+        x, y = (
+            (np.arange(round(1.3 * count)) - 0.65 * count + generator.uniform(0.0, 1.0)) * step
+            for count, step in zip(cells, spacing, strict=True)
+        )
+        gap = 0.5 * (curvatures[0] * x[:, None] ** 2 + curvatures[1] * y**2)
+        solution = solve_contact(gap, spacing, 115e3, load=100.0, warn=False)
+        if min(solution.cells_across) == across:
+            measured = np.array([solution.contact_area, *solution.semi_axes])
+            errors.append(np.abs(measured / (contact.area, contact.semi_minor, contact.semi_major) - 1.0).max())
+    assert max(errors) < bound
+
+
 @pytest.mark.parametrize("cut", [False, True])
 @pytest.mark.parametrize("half_lengths", [(1.0, 0.7), (0.7, 1.0)])
 def test_area_and_axes_of_a_flat_punch_are_those_of_its_material(half_lengths, cut):

@@ -128,6 +128,31 @@ def test_peak_at_the_cap_has_the_least_error():
     assert estimate.peak_pressure == 0.6 / min(capped.cells_across) ** 2
 
 
+def noisy_ball(amplitude):
+    """A ball on a surface whose every cell has a height of its own."""
+    x = (np.arange(128) - 63.5) * 0.6 / 128
+    return (x[:, None] ** 2 + x**2) / 20.0 + amplitude * np.random.default_rng(7).standard_normal((128, 128))
+
+
+def test_peak_that_two_grids_do_not_agree_on_is_warned_of():
+    """Heights of single cells: averaged over four cells they halve, and with them the peak pressure far above Hertz."""
+    gap, spacing = noisy_ball(2e-4), (0.6 / 128, 0.6 / 128)
+    with pytest.warns(AccuracyWarning, match=r"estimated error of the peak pressure is \d+ %, above 3 %"):
+        rough = solve_contact(gap, spacing, E_STAR, load=100.0)
+    halved = solve_contact(gap.reshape(64, 2, 64, 2).mean(axis=(1, 3)), (0.6 / 64,) * 2, E_STAR, load=100.0, warn=False)
+    assert halved.peak_pressure < 0.75 * rough.peak_pressure
+    assert solve_contact(noisy_ball(0.0), spacing, E_STAR, load=100.0).accuracy_warnings == ()
+    capped = solve_contact(gap, spacing, E_STAR, load=100.0, max_pressure=2000.0)
+    assert capped.accuracy_warnings == ()  # the peak is the cap, whatever the grid
+
+
+def test_single_cell_in_contact_is_one_cell():
+    spike = np.ones((20, 20))
+    spike[9, 9] = 0.0
+    (sentence,) = solve_contact(spike, (0.1, 0.1), E_STAR, load=1.0, warn=False).grid_warnings
+    assert sentence.startswith("the contact is 1 cell across")
+
+
 def test_solution_cannot_be_changed():
     with pytest.raises(dataclasses.FrozenInstanceError):
         ball().approach = 0.0

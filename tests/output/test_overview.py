@@ -290,3 +290,22 @@ def test_profile_shifts_of_both_gears_are_shown_and_what_asks_for_one_that_canno
     assert any(
         "pair.centre_distance_mm = 170 and the given profile_shift ask for" in one for one in raised.value.__notes__
     )
+
+
+def test_pitch_deviations_are_those_of_the_teeth():
+    """By hand: of 1 2 -1 0 ... the largest step is 3, the range 3; a class fills its tolerances of ISO 1328-1."""
+    steps = [1.0, 2.0, -1.0, *[0.0] * 57]
+    text = described("helical", wheel__teeth=60, wheel__pitch__index_um=steps, wheel__pitch__runout_um=4.0)
+    row = "f_p, F_p at base circle, runout [um]"
+    assert cells(text, f"wheel: {row}") == ["3.00", "3.00", "4.00"]
+    assert f"pinion: {row}" not in text
+    drawn = described("helical", pinion__pitch__tolerance_class=6, pinion__pitch__seed=3)
+    single, total, runout = map(float, cells(drawn, f"pinion: {row}"))
+    gear = read_scene(SCENES / "helical.toml").mesh().pinion
+    sizes = 2.0 * gear.reference_radius, gear.normal_module
+    # f_pT = 0.001 d + 0.4 m_n + 5, F_pT = 0.002 d + 0.55 sqrt(d) + 0.7 m_n + 12 of class 5, times sqrt(2)
+    nominal = 0.001 * sizes[0] + 0.4 * sizes[1] + 5.0, 0.002 * sizes[0] + 0.55 * sizes[0] ** 0.5 + 0.7 * sizes[1] + 12.0
+    # ISO rounds to 0.5 or 1 um; index deviations are along the line of action
+    on_arc = np.array([single, total]) / np.cos(gear.transverse_pressure_angle)
+    assert_allclose(on_arc, [2.0**0.5 * size for size in nominal], atol=0.51)
+    assert runout == 0.0

@@ -1,11 +1,13 @@
 """The picture to look at first: its panels are those that a pair has, with the numbers of the scene."""
 
+import re
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from numpy.testing import assert_allclose
 
 from loaded_tca.plots import plot_first_look
@@ -129,3 +131,14 @@ def test_check_writes_the_picture(run, tmp_path, monkeypatch):
 def test_check_writes_the_pictures_of_both_meshes_of_a_stage(run, tmp_path):
     code, out, _ = run("check", SCENES.parent / "stages" / "wind_spur.toml", "--out", tmp_path / "out")
     assert (code, out.split(": ")[-1]) == (0, "first_look_sun.png, first_look_ring.png\n")
+
+
+def test_pictures_of_a_stage_have_the_names_of_its_gears(run, tmp_path, monkeypatch):
+    figures = []
+    monkeypatch.setattr("loaded_tca.plots.png_of", lambda figure: figures.append(figure) or b"")
+    run("check", SCENES.parent / "stages" / "wind_spur.toml", "--out", tmp_path / "out")
+    for figure, gears in zip(figures, (("sun", "planet"), ("planet", "ring")), strict=True):
+        words = " ".join(text.get_text() for text in figure.findobj(Text))
+        assert not re.search("pinion|wheel", words)
+        labels = [text.get_text() for text in figure.legends[0].get_texts()]
+        assert all(any(label.startswith(f"{gear}, ") for label in labels) for gear in gears)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from numpy.testing import assert_allclose
 
 from loaded_tca.plots import plot_teeth_in_mesh
@@ -129,3 +130,18 @@ def test_picture_has_its_numbers_with_units():
     }
     assert [text for text in texts if len(text) <= 2] == ["T1", "A", "B", "C", "D", "E"] or "T2" in texts
     assert "undercut of the pinion: 1.5172 mm of the path are lost, 13.6%" in note_of(drawn(SPUR, UNDERCUT)[1])
+
+
+@pytest.mark.parametrize("sense", ["positive", "negative"])
+@pytest.mark.parametrize("path", [SPUR, RING])
+def test_clearances_are_written_where_the_path_of_contact_is_not(path, sense):
+    """On the other side of the line of centres, so that no letter of the path lies below them."""
+    _, figure = drawn(path, {"pair.sense": sense})
+    FigureCanvasAgg(figure).draw()
+    ends, axes = line(figure, "path of contact A to E"), figure.axes[0]
+    clearances = [text for text in axes.texts if text.get_text().startswith("c = ")]
+    assert len(clearances) == 2
+    for text in clearances:
+        extent = text.get_window_extent().transformed(axes.transData.inverted())
+        (end,) = ends[np.sign(ends[:, 1]) == np.sign(extent.y0 + extent.y1)]
+        assert end[0] * (extent.x0 + extent.x1) < 0.0

@@ -7,6 +7,7 @@ import pytest
 
 from loaded_tca import InputError, parse_scene, read_scene
 from loaded_tca.reference.iso1328 import flank_tolerances
+from loaded_tca.results.revolution import open_turns
 from loaded_tca.scene.pitch import Pitch, Revolution, read_deviations
 from tests.refusals import refused_calls
 
@@ -164,6 +165,19 @@ def test_teeth_of_their_own_are_written_and_read_back():
     assert parse_scene(scene.to_toml(), folder=None) == scene
     text = SCENE.to_toml() + "\n[[wheel.tooth]]\nnumber = 7\nmodifications = {lead_crowning_um = 3.0}\n"
     assert parse_scene(text).wheel.tooth[0].modifications.lead_crowning_um == 3.0
+
+
+@pytest.mark.parametrize(
+    ("crowning", "every", "differ", "depart"),
+    [(5.0, 1, False, False), (9.0, 1, False, True), (9.0, 2, True, True), (5.0, 2, False, False)],
+)
+def test_teeth_with_flanks_of_their_own_differ_where_these_do(crowning, every, differ, depart):
+    """All or every other tooth with a crowning, the gear with 5 um, which analyses of one pitch take."""
+    teeth = [{"number": k, "modifications": {"lead_crowning_um": crowning}} for k in range(0, 24, every)]
+    scene = SCENE.with_changes({"wheel.modifications": {"lead_crowning_um": 5.0}, "wheel.tooth": teeth})
+    assert scene.wheel.teeth_differ == differ
+    assert scene.has_pitch_deviations == depart
+    assert open_turns(scene, 5) == ["wheel"] * differ
 
 
 def test_kinds_of_teeth_are_as_many_as_flanks_differ():

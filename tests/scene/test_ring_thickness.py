@@ -68,7 +68,7 @@ def test_check_has_thickness_and_backlash_of_a_ring(thinned):
     helical = scene(pair__helix_angle_deg=15.0, wheel__tip_diameter_mm=181.5)
     rows = {name: cells for name, *cells in helical.geometry_rows()}
     assert rows["span W_k over k teeth (spaces) [mm]"][1] == "-"
-    assert rows["  none of the wheel"] == [
+    assert rows["  no span W_k of the wheel"] == [
         "no span touches the helical teeth of a ring, which are hollow; measure between balls"
     ]
 

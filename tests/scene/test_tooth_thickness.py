@@ -79,14 +79,14 @@ def test_check_says_why_a_gear_has_no_span():
     rows = {name: cells for name, *cells in narrow.geometry_rows()}
     span, base_helix = scene().mesh().pinion.span_measurement(5), asin(sin(radians(15.0)) * cos(radians(20.0)))
     assert rows["span W_k over k teeth [mm]"][0] == "-"
-    assert rows["  none of the pinion"] == [
+    assert rows["  no span W_k of the pinion"] == [
         f"a span over 5 teeth needs a face width above {span * sin(base_helix):.4g} mm"
     ]
-    assert "  none of the wheel" not in rows
-    assert "  none of the pinion" not in {name for name, *_ in scene().geometry_rows()}
+    assert "  no span W_k of the wheel" not in rows
+    assert "  no span W_k of the pinion" not in {name for name, *_ in scene().geometry_rows()}
     # teeth cut down below the place where the span would touch
     low = {name: cells for name, *cells in scene(pinion__tip_diameter_mm=103.0).geometry_rows()}
-    assert "touches no flank: it would be at diameter" in low["  none of the pinion"][0]
+    assert "touches no flank: it would be at diameter" in low["  no span W_k of the pinion"][0]
 
 
 def test_check_has_no_measure_over_pins_of_a_face_too_narrow_for_them():

@@ -45,6 +45,7 @@ test_bad_stage_is_refused = refused_calls(
         lambda: changed(sun__pitch__runout_um=10.0),
         "sun.pitch: found a section; not allowed: teeth of a stage are alike",
     ),
+    (lambda: changed(sun__shaft__start_mm=0.0), r"^sun\.shaft: found a section; not allowed: [^\n]*$"),  # nor its keys
     (
         lambda: changed(rating={"required_flank_safety": 1.0, "required_root_safety": 1.4}),
         "rating.life_hours: missing; needed unless load cases have hours",

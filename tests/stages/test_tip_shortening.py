@@ -3,6 +3,7 @@
 from math import cos, radians
 from pathlib import Path
 
+import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.stages import parse_stage
@@ -40,9 +41,25 @@ def test_stage_without_shortening_is_the_one_of_before():
     assert stage(pair__tip_shortening="none").meshes == stage().meshes
 
 
-test_tips_are_given_once = refused_calls(
+@pytest.mark.parametrize(
+    ("tips", "whose"), [({"ring__tip_diameter_mm": 110.2}, 3), ({"sun__tip_alteration_coefficient": -0.2}, 0)]
+)
+def test_tip_of_a_gear_stands_beside_those_that_are_computed(tips, whose):
+    """The formula has profile shifts and the centre distance alone: a given tip changes no other."""
+    meshes = [stage(pair__tip_shortening="computed", **given).meshes for given in ({}, tips)]
+    computed, given = ((sun.pinion, sun.wheel, ring.pinion, ring.wheel) for sun, ring in meshes)
+    for number, (before, after) in enumerate(zip(computed, given, strict=True)):
+        assert (before == after) == (number != whose)
+    # 110.2 mm as given; k m_n = -0.2 m_n
+    tip = 2.0 * given[3].tip_radius if whose == 3 else given[0].tip_alteration
+    assert_allclose(tip, 110.2 if whose == 3 else -0.2 * MODULE, rtol=1e-12)
+
+
+test_tips_of_all_gears_leave_none_to_compute = refused_calls(
     (
-        lambda: stage(pair__tip_shortening="computed", ring__tip_diameter_mm=110.2, planet__topping=True),
-        '^pair.tip_shortening: found "computed" beside planet.topping = true and ring.tip_diameter_mm = 110.2; give',
+        lambda: stage(
+            pair__tip_shortening="computed", ring__tip_diameter_mm=110.2, planet__topping=True, sun__topping=True
+        ),
+        '^pair.tip_shortening: found "computed" beside a tip of every gear; leave one',
     ),
 )
