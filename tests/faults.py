@@ -4081,6 +4081,48 @@ FAULTS = (
         "counts = wanted.positions,",
         "reports/test_revolution_report.py::test_report_has_its_sections_and_the_figures_of_the_result",
     ),
+    Fault(
+        "surfaces: half b of a double helical pair is written as its mirror image",
+        "output/surface_files.py",
+        "math.copysign(1.0, mid_face)]",
+        "1.0]",
+        "output/test_surface_files.py::test_halves_of_a_double_helical_pair_have_their_hands_and_their_places_on_the_gears",
+    ),
+    Fault(
+        "surfaces: a mirrored mesh shows its inside",
+        "tooth/surface.py",
+        "self.triangles if np.linalg.det(axes) > 0.0 else",
+        "self.triangles if np.linalg.det(axes) != 0.0 else",
+        "tooth/test_triangles.py::test_mirrored_mesh_keeps_its_outside_and_its_volume",
+    ),
+    Fault(
+        "surfaces: a rack is written far from its reference line, in single precision",
+        "tooth/surface.py",
+        "np.array([-self.row.reference_radius, 0.0, 0.0])",
+        "np.zeros(3)",
+        "output/test_surface_files.py::test_rack_is_drawn_from_its_reference_line",
+    ),
+    Fault(
+        "surfaces: ends of a tooth have triangles without area between the points of a straight land",
+        "tooth/surface.py",
+        "[tooth[root:tip], tooth[::-1][root:tip]]",
+        "[tooth[:tip], tooth[::-1][:tip]]",
+        "output/test_surface_files.py::test_rack_is_drawn_from_its_reference_line",
+    ),
+    Fault(
+        "surfaces: teeth of a whole rack stand about an axis",
+        "tooth/surface.py",
+        "if self.row is None:\n            return points @",
+        "if self.teeth:\n            return points @",
+        "output/test_surface_files.py::test_whole_rack_is_straight_and_has_the_teeth_of_its_length",
+    ),
+    Fault(
+        "rack: an undercut pinion is not warned of",
+        "scene/rack.py",
+        "return [*jams, *undercut_sentences(mounted, place, self.flank_names)]",
+        "return jams",
+        "scene/test_rack_scene.py::test_undercut_of_a_pinion_on_a_rack_is_warned_of_with_its_size",
+    ),
 )
 
 

@@ -26,7 +26,8 @@ pair, and halves_*.png; docs/guide/double_helical.md says more."""
 TEETH = """files in DIR:
   pinion.vtk, wheel.vtk     the teeth in contact, in the fixed frame; "patch" tells flanks, fillets and lands apart
   pressure.vtk              the cells under pressure on the pinion's flank, in MPa
-  pinion.stl, wheel.stl     closed solids, each in its gear's own frame
+  pinion.stl, wheel.stl     closed solids, each in its gear's own frame; a rack from its reference line
+Of half a and half b of a double helical pair all five have the true hands, with z = 0 in the middle of the groove.
   teeth.png                 a picture of the teeth with this pressure
 All lengths are in mm."""
 COMPARE = """files in DIR:

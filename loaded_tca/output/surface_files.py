@@ -10,6 +10,7 @@ StereoLithography Interface Specification.
 
 from __future__ import annotations
 
+import math
 import struct
 from typing import TYPE_CHECKING
 
@@ -149,7 +150,7 @@ def write_teeth(
     title : str
         Said in the header of each file.
     whole_gears : bool
-        Whether the solids have all teeth, on their rim, instead of one.
+        Whether the solids have all teeth, on their rim, instead of one; of a rack those of its length.
     more : mapping of str to bytes
         Contents of files to write with these, by their names: a picture of the same teeth.
 
@@ -158,15 +159,28 @@ def write_teeth(
     tuple of Path
         ``pinion.vtk``, ``wheel.vtk``, ``pressure.vtk`` (fixed frame, teeth in contact; ``patch`` on each triangle of a
         tooth, ``pressure_MPa`` on each of the pressure), and ``pinion.stl``, ``wheel.stl`` (each in its gear's own
-        frame, closed), and those of ``more``.
+        frame, closed), and those of ``more``. The own frame of a rack begins on its reference line. Halves of a double
+        helical pair have their true hands in all files, and stand where they lie on the whole gears: z = 0 is the
+        middle of the groove, in the fixed frame that of the pinion.
 
     Raises
     ------
     InputError
-        If a file cannot be written.
+        If a file cannot be written, or a whole rack is asked for whose length is not given.
     """
-    solids = [tooth.triangles(tooth.teeth if whole_gears else 1, closed=True) for tooth in (teeth.pinion, teeth.wheel)]
-    surfaces = shown.pinion, shown.wheel, shown.pressure
+    faces = (None, None) if shown.mid_faces is None else shown.mid_faces.tolist()
+    solids = [
+        _on_whole_gear(tooth.solid(whole_gear=whole_gears), face)
+        for tooth, face in zip((teeth.pinion, teeth.wheel), faces, strict=True)
+    ]
+    surfaces = [_on_whole_gear(mesh, faces[0]) for mesh in (shown.pinion, shown.wheel, shown.pressure)]
     files: list[Buffer] = [b"".join(_vtk_parts(mesh, title)) for mesh in surfaces]
     files += [_stl(solid, title) for solid in solids]
     return replace_together(directory, {**dict(zip(TEETH_FILES, files, strict=True)), **more})
+
+
+def _on_whole_gear(mesh: TriangleMesh, mid_face: float | None) -> TriangleMesh:
+    """A surface of a half in the frame of the double helical gear: half b is mirrored back; others as they are."""
+    if mid_face is None:
+        return mesh
+    return mesh.moved(np.array([0.0, 0.0, mid_face]), np.diag([1.0, 1.0, math.copysign(1.0, mid_face)]))

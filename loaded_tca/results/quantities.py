@@ -185,6 +185,17 @@ ROOT_MAPS: dict[str, Part] = {
 """The same by their names in a file; places along the face are as many as the width of each gear asks for."""
 ROOT_PARTS = ROOT_QUANTITIES | ROOT_MAPS
 
+HALF_QUANTITIES: dict[str, Part] = {
+    "mid_face": (
+        ("gear",),
+        "mm",
+        "axial place of the middle of the face of a half in the double helical gear, from the middle of its groove; "
+        "half a lies at positive places, half b, whose result is that of its mirror image, at negative ones",
+    ),
+}
+"""Numbers of both gears that the result of a half of a double helical pair has."""
+HALF_ASKED = Asked(lambda *_: False, "the result is not one of a half of a double helical pair")
+
 MOTION = (*CYCLE, "motion")
 SUPPORT_QUANTITIES: dict[str, Part] = {
     "pinion_motion": (
@@ -376,6 +387,7 @@ RACK_ASKED = Asked(
 OF_SUPPORTS = {
     **numbers(SUPPORT_QUANTITIES, SUPPORTS_ASKED),
     **numbers(BEARING_QUANTITIES, SHAFT_ASKED),
+    **numbers(HALF_QUANTITIES, HALF_ASKED),
     **numbers(ROLLING_QUANTITIES, ROLLING_ASKED),
 }
 ROOT_STRESS = numbers(ROOT_PARTS, ROOTS_ASKED)
