@@ -146,6 +146,12 @@ class RackScene(CylindricalScene):
         *(demand for demand in Scene.rules if demand not in REVOLUTION_RULES),
         opposite_hands(),
         Rule(("wheel.length_mm", "rating"), _needs_length),
+        rule(
+            ("rating.tolerance_class",),
+            lambda given: given is None,
+            "found {0}; not allowed with a rack, of which ISO 1328-1 has no classes: give rating.dynamic_factor = "
+            '"given" and rating.transverse_load_factor = "analysis" or a number',
+        ),
         *(
             rule(
                 (name,),

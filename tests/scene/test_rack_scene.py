@@ -14,6 +14,7 @@ import pytest
 from loaded_tca import MeshCycle, Scene, analyse, analyse_revolution, parse_scene, read_scene
 from loaded_tca.errors import AccuracyWarning, InputError, NotAskedError
 from loaded_tca.scene import CylindricalScene
+from loaded_tca.scene.key_reference import scene_reference
 from validation.cylindrical.undercut import rolled_form_radius
 
 ROUNDING = 1e-12  # of a few products
@@ -178,6 +179,11 @@ def test_reliefs_of_the_rack_start_below_its_tip_line() -> None:
         ),
         ("wheel.teeth", "Rack", 'wheel.teeth: found "Rack"; allowed "rack"'),
         ("wheel.height_mm", None, "wheel.height_mm: missing"),
+        (
+            "rating",
+            RATING | {"tolerance_class": 6},
+            "rating.tolerance_class: found 6; not allowed with a rack, of which",
+        ),
     ],
 )
 def test_what_a_rack_does_not_have_is_refused_by_its_key(key: str, value: Any, message: str) -> None:
@@ -247,6 +253,13 @@ def test_undercut_of_a_pinion_on_a_rack_is_warned_of_with_its_size():
     assert of_whole == pytest.approx(whole / (3.0 * pi * cos(radians(20.0))), abs=1e-4)  # as printed
     assert ratio == pytest.approx(expected, abs=5e-4)  # the rolled rack has points 5e-4 of its rounding apart
     assert SPUR.with_changes({"pinion.teeth": 18}).interferences() == []
+
+
+def test_reference_of_keys_has_none_that_a_rack_refuses():
+    (rack,) = [each for each in scene_reference() if each.path == "wheel" and "the rack" in each.about]
+    names = {row.name for row in rack.rows}
+    assert not names & {"bore_diameter_mm", "tooth", "profile_shift"}
+    assert {"height_mm", "length_mm", "teeth", "face_width_mm"} <= names
 
 
 def test_written_rack_has_no_line_on_keys_that_it_refuses():
