@@ -4123,6 +4123,48 @@ FAULTS = (
         "return jams",
         "scene/test_rack_scene.py::test_undercut_of_a_pinion_on_a_rack_is_warned_of_with_its_size",
     ),
+    Fault(
+        "check: mounting errors of a half stand for those of a double helical pair",
+        "output/double_helical_overview.py",
+        "scene_sections(own, positions, mounted=False)",
+        "scene_sections(own, positions)",
+        "test_cli_double_helical.py::test_check_shows_the_mounting_errors_that_the_scene_has",
+    ),
+    Fault(
+        "rack: a tolerance class is taken, of which there is none",
+        "scene/rack.py",
+        "lambda given: given is None,",
+        "lambda given: True,",
+        "scene/test_rack_scene.py::test_what_a_rack_does_not_have_is_refused_by_its_key",
+    ),
+    Fault(
+        "hypoid blanks: pitch cones of another face width or cutter are taken",
+        "gears/hypoid_blank.py",
+        "value is None or isclose(",
+        "value is not None or isclose(",
+        "gears/test_hypoid_blank.py::test_blank_refuses",
+    ),
+    Fault(
+        "hypoid blanks: teeth that do not roll on the pitch cones are taken",
+        "gears/hypoid_blank.py",
+        "abs(modules[0] - modules[1]) <= ROLLING * modules[1],",
+        "True,",
+        "gears/test_hypoid_blank.py::test_blank_refuses",
+    ),
+    Fault(
+        "cutters: blades are rounded over more than their slot",
+        "gears/face_milled.py",
+        "if rounded <= width or width <= 0.0 or rounded == 0.0:",
+        "if rounded <= 2.0 * width or width <= 0.0 or rounded == 0.0:",
+        "scene/test_face_milled_scene.py::test_tips_of_blades_that_are_rounded_over_more_than_their_slot_are_refused",
+    ),
+    Fault(
+        "face-milled gears: thin teeth are not warned of",
+        "scene/face_milled.py",
+        "if room.backlash <= MOST_BACKLASH * module:",
+        "if room.backlash <= 2.0 * MOST_BACKLASH * module:",
+        "scene/test_face_milled_scene.py::test_teeth_that_are_thin_beside_their_spaces_are_warned_of",
+    ),
 )
 
 
