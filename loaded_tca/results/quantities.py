@@ -194,7 +194,6 @@ HALF_QUANTITIES: dict[str, Part] = {
     ),
 }
 """Numbers of both gears that the result of a half of a double helical pair has."""
-HALF_ASKED = Asked(lambda *_: False, "the result is not one of a half of a double helical pair")
 
 MOTION = (*CYCLE, "motion")
 SUPPORT_QUANTITIES: dict[str, Part] = {
@@ -383,14 +382,15 @@ ROLLING_ASKED = Asked(  # which a file has where the scene does
 RACK_ASKED = Asked(
     lambda scene, _: scene.rack_radius is not None, 'the wheel is no rack; wheel.teeth = "rack" makes it one'
 )
-"""When a result has numbers of root stress, of supports, of shafts, of rolling bearings and of racks."""
+HALF_ASKED = Asked(lambda *_: False, "the result is not one of a half of a double helical pair")
+"""When a result has numbers of root stress, of supports, of shafts, of rolling bearings, of racks and of halves."""
 OF_SUPPORTS = {
     **numbers(SUPPORT_QUANTITIES, SUPPORTS_ASKED),
     **numbers(BEARING_QUANTITIES, SHAFT_ASKED),
-    **numbers(HALF_QUANTITIES, HALF_ASKED),
     **numbers(ROLLING_QUANTITIES, ROLLING_ASKED),
 }
 ROOT_STRESS = numbers(ROOT_PARTS, ROOTS_ASKED)
 OF_RACKS = numbers(RACK_QUANTITIES, RACK_ASKED)
-CYCLE_NUMBERS = numbers(QUANTITIES) | OF_SUPPORTS | ROOT_STRESS | OF_RACKS
-"""All numbers of mesh cycles by their names: those that all have, of supports, of root stress, of racks."""
+OF_A_HALF = numbers(HALF_QUANTITIES, HALF_ASKED)
+CYCLE_NUMBERS = numbers(QUANTITIES) | OF_SUPPORTS | ROOT_STRESS | OF_RACKS | OF_A_HALF
+"""All numbers of mesh cycles by their names: those that all have, of supports, of root stress, of racks, of halves."""

@@ -250,8 +250,8 @@ class RackScene(CylindricalScene):
         return self.pinion.teeth * self.rack.pitch / self.wheel.length_mm
 
     @property
-    def flank_names(self) -> tuple[str, str]:
-        """Names of the two flanks in contact in pictures."""
+    def gear_names(self) -> tuple[str, str]:
+        """Names of pinion and wheel in pictures."""
         return "pinion", "rack"
 
     def held_row(self, pair: GearPair) -> Row:
@@ -332,4 +332,4 @@ class RackScene(CylindricalScene):
         nominal = abs(mesh.backlash) <= ROUNDING * module
         mounted = rack_mesh(self._gear, self.rack, self.distance + error, mesh.axial_offset) if error else mesh
         jams = interferences(mounted.room, module, place, nominal=nominal)
-        return [*jams, *undercut_sentences(mounted, place, self.flank_names)]
+        return [*jams, *undercut_sentences(mounted, place, self.gear_names)]

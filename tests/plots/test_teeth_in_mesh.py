@@ -1,5 +1,6 @@
 """Teeth of both gears in mesh at the pitch point: they touch there, overlap nowhere, and have their numbers."""
 
+import itertools
 import math
 from functools import cache
 from pathlib import Path
@@ -129,3 +130,19 @@ def test_picture_has_its_numbers_with_units():
     }
     assert [text for text in texts if len(text) <= 2] == ["T1", "A", "B", "C", "D", "E"] or "T2" in texts
     assert "undercut of the pinion: 1.5172 mm of the path are lost, 13.6%" in note_of(drawn(SPUR, UNDERCUT)[1])
+
+
+def test_rack_is_called_rack_and_letters_do_not_overlap():
+    """The tip line of a rack cuts the line of action near T1 where 18 teeth are just not undercut."""
+    changes = {"pair.helix_angle_deg": 0.0, "pinion.teeth": 18, "pinion.modifications": {}}
+    scene = read_scene(SCENES / "rack_and_pinion.toml").with_changes(changes)
+    figure = plot_teeth_in_mesh(scene)
+    figure.canvas.draw()
+    (axes,) = figure.axes
+    letters = [text for text in axes.texts if set(text.get_text()) <= set("ABCDET1 ")]  # T2 is far away
+    assert "".join(text.get_text().replace(" ", "") for text in letters) == "T1ABCDE"
+    boxes = sorted((text.get_window_extent() for text in letters), key=lambda box: box.x0)
+    assert all(left.x1 <= right.x0 for left, right in itertools.pairwise(boxes))
+    words = [*axes.get_legend_handles_labels()[1], axes.get_ylabel(), note_of(figure)]
+    assert "rack" in words
+    assert not [text for text in words if "wheel" in text]
