@@ -4119,7 +4119,7 @@ FAULTS = (
     Fault(
         "rack: an undercut pinion is not warned of",
         "scene/rack.py",
-        "return [*jams, *undercut_sentences(mounted, place, self.flank_names)]",
+        "return [*jams, *undercut_sentences(mounted, place, self.gear_names)]",
         "return jams",
         "scene/test_rack_scene.py::test_undercut_of_a_pinion_on_a_rack_is_warned_of_with_its_size",
     ),
