@@ -4165,6 +4165,13 @@ FAULTS = (
         "if room.backlash <= 2.0 * MOST_BACKLASH * module:",
         "scene/test_face_milled_scene.py::test_teeth_that_are_thin_beside_their_spaces_are_warned_of",
     ),
+    Fault(
+        "surfaces: STL files of surfaces so far away that single precision spoils them",
+        "output/surface_files.py",
+        "away <= FARTHEST * size,",
+        "away <= 1e3 * FARTHEST * size,",
+        "output/test_surface_files.py::test_surface_too_far_away_for_single_precision_is_refused",
+    ),
 )
 
 

@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loaded_tca.arguments import checked
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, require
+from loaded_tca.plain import plain
 from loaded_tca.results.files import Buffer, FilePath, replace_file, replace_together
 
 if TYPE_CHECKING:
@@ -35,6 +36,8 @@ LONGEST_TITLE = 255
 """Bytes of the second line of a VTK file."""
 STL_HEADER = 80
 """Bytes before the number of triangles in an STL file."""
+FARTHEST = 1e4
+"""Sizes of a surface from the origin up to which single precision resolves a thousandth of its size."""
 _STL_RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
@@ -109,12 +112,21 @@ def write_stl(path: FilePath, mesh: TriangleMesh, title: str = "") -> None:
     Raises
     ------
     InputError
-        If the file cannot be written.
+        If the file cannot be written, or the surface lies so far from the origin that single precision has no room for
+        its triangles.
     """
     replace_file(path, _stl(mesh, title))
 
 
 def _stl(mesh: TriangleMesh, title: str) -> bytes:
+    if mesh.size:
+        away, size = float(np.abs(mesh.vertices).max()), float(np.ptp(mesh.vertices, axis=0).max())
+        far = (
+            f"the surface of {plain(size)} mm lies {plain(away)} mm from the origin; allowed up to {FARTHEST:g} sizes: "
+        )
+        require(
+            (away <= FARTHEST * size, f"vertices: {far}coordinates of STL files have seven digits; move the surface")
+        )
     records = np.zeros(len(mesh.triangles), dtype=_STL_RECORD)
     normals = mesh.normals
     records["normal"] = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)

@@ -241,3 +241,14 @@ def test_whole_rack_is_straight_and_has_the_teeth_of_its_length():
     endless = rack_pair(pinion, Rack(**rack)).wheel
     with pytest.raises(InputError, match=r"whole gears: found a rack of no given length; give wheel\.length_mm"):
         build_tooth(endless.flanks, endless.form, COARSE).solid(whole_gear=True)
+
+
+def test_surface_too_far_away_for_single_precision_is_refused(tmp_path):
+    """At 4e6 mm coordinates have steps of 0.25 mm, as a rack has about the axis of the gear that stands for it."""
+    far = TriangleMesh(CORNERS + np.array([4e6, 0.0, 0.0]), FACES)
+    with pytest.raises(
+        InputError, match="vertices: the surface of 3 mm lies 4000000 mm from the origin; allowed up to"
+    ):
+        write_stl(tmp_path / "far.stl", far)
+    write_vtk(tmp_path / "far.vtk", far)  # in double precision
+    assert [path.name for path in tmp_path.iterdir()] == ["far.vtk"]
