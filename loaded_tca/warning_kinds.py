@@ -398,6 +398,14 @@ WIDE_BACKLASH = Kind(
     "give the `profile_shift` of one gear: that of the other one follows from the centre distance; or give the tooth "
     "thickness of both; nothing, if the backlash is meant",
 )
+WIDE_SPACES = Kind(
+    "wide backlash: at the mean point the normal pitch is {backlash:.3g} mm, {modules:.2g} mean normal modules, larger "
+    "than the teeth of pinion and wheel together",
+    "gears have a backlash of some hundredths of a module. Teeth of face-milled gears are as thin as the point radii "
+    "of their blades make them: bending and root stress are those of such teeth",
+    "check the point radii of both cutters, or the backlash and the thickness modification of the blank that they "
+    "follow from; nothing, if the backlash is meant",
+)
 CONTACT_RATIO = Kind(
     "the contact ratio is {ratio:.3g}, below 1: over a part of each pitch the gears touch at a tip or a face end only",
     "the path of contact is shorter than a pitch: one pair leaves it before the next pair enters it, and meanwhile a "

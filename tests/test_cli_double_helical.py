@@ -84,6 +84,21 @@ def test_check_describes_both_halves(capsys):
     assert sum(line.startswith("half ") for line in lines) == 2
 
 
+def test_check_shows_the_mounting_errors_that_the_scene_has(capsys):
+    """Not those of the halves, which follow from unlike face widths, levers and the errors of the whole wheel."""
+    wide = ["--set", "pinion.face_width_mm=104"]
+    assert main(["check", str(SCENE), *wide]) == 0
+    assert [line.split() for line in capsys.readouterr().out.splitlines() if "mounting" in line] == [
+        ["mounting", "errors", "none"]
+    ]
+    errors = ["--set", "mounting.axial_offset_mm=0.3", "--set", "mounting.half_b.out_of_plane_deg=0.005"]
+    assert main(["check", str(SCENE), *wide, *errors]) == 0
+    assert [line.split() for line in capsys.readouterr().out.splitlines() if "mounting" in line] == [
+        ["mounting.axial_offset_mm", "0.3"],
+        ["mounting.half_b.out_of_plane_deg", "0.005"],
+    ]
+
+
 @pytest.mark.parametrize("command", ["vh", "ease-off", "measured"])
 def test_commands_that_take_one_pair_refuse_two_halves(command, tmp_path, capsys):
     assert main([command, str(SCENE), "--out", str(tmp_path)]) == 2

@@ -26,9 +26,10 @@ pair, and halves_*.png; docs/guide/double_helical.md says more."""
 TEETH = """files in DIR:
   pinion.vtk, wheel.vtk     the teeth in contact, in the fixed frame; "patch" tells flanks, fillets and lands apart
   pressure.vtk              the cells under pressure on the pinion's flank, in MPa
-  pinion.stl, wheel.stl     closed solids, each in its gear's own frame
+  pinion.stl, wheel.stl     closed solids, each in its gear's own frame; a rack from its reference line
   teeth.png                 a picture of the teeth with this pressure
-All lengths are in mm."""
+All lengths are in mm. Of half a and half b of a double helical pair the surfaces have the true hands, with z = 0 in the
+middle of the groove; the picture shows half b as its mirror image, as all pictures of this half."""
 COMPARE = """files in DIR:
   comparison.csv            one row per common torque and key figure: values, differences from the first result
   comparison.json           the same numbers, and the keys in which the scenes differ

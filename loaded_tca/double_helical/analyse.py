@@ -28,7 +28,9 @@ from loaded_tca.errors import (
 )
 from loaded_tca.plain import plain
 from loaded_tca.results import MeshCycle
+from loaded_tca.results.files import variables_of
 from loaded_tca.results.load_factors import face_forces
+from loaded_tca.results.quantities import HALF_QUANTITIES
 from loaded_tca.results.revolution import Revolution
 from loaded_tca.results.warnings import is_under_torque
 from loaded_tca.scene.cylindrical import CylindricalScene
@@ -146,8 +148,8 @@ def analyse_double_helical(scene: DoubleHelicalScene, progress: Progress | None 
     places = [places[-1], *places[:-1]]
     parts = [_arrays(place) | {"place": np.full(len(place.scene.torques), n)} for n, place in enumerate(places)]
     dataset = joined(DoubleHelicalResult, scene, places, parts)
-    (half_a, half_b), *others = [place.cycles for place in places]
-    elsewhere = tuple((first, second) for first, second in others)
+    (half_a, half_b), *others = [_on_whole_gears(place) for place in places]
+    elsewhere = tuple(others)
     return DoubleHelicalResult(scene=scene, dataset=dataset, half_a=half_a, half_b=half_b, elsewhere=elsewhere)
 
 
@@ -222,6 +224,17 @@ def expected_double_helical_effort(scene: DoubleHelicalScene) -> Effort:
         teeth=times * effort.teeth,
         roots=times * effort.roots,
     )
+
+
+def _on_whole_gears(place: Place) -> tuple[MeshCycle, MeshCycle]:
+    """Mesh cycles of both halves that contain where their faces lie on the whole gears."""
+    scene = place.scene
+    levers = np.array([scene.lever_of(scene.pinion), scene.lever_of(scene.wheel)])
+    first, second = (
+        replace(cycle, dataset=cycle.dataset.assign(variables_of(HALF_QUANTITIES, {"mid_face": sign * levers})))
+        for cycle, sign in zip(place.cycles, SIGNS, strict=True)
+    )
+    return first, second
 
 
 def _even_torques(scene: DoubleHelicalScene) -> list[list[float]]:

@@ -139,6 +139,13 @@ def synthesised_gears(
     # settings are those of right-hand members: a right-hand pinion stands for both
     mating = _wheel(blank, wheel, edge_radii[1])
     pinion = _Pinion(blank, mating, (mismatch, coast_mismatch), edge_radii[0]).solved(STRENGTHS[wheel])
+    require(
+        *(
+            (overlap is None, f"edge_radii: found {plain(radius, 6)} mm of the {gear.name}; {overlap}")
+            for gear, radius in zip((pinion, mating), edge_radii, strict=True)
+            for overlap in [gear.cutter.overlap_of_tips]
+        )
+    )
     if pinion_hand == "right":
         return pinion, mating
     return replace(pinion, blank=replace(pinion.blank, hand="left")), replace(

@@ -163,6 +163,25 @@ class Cutter:
         turn = radians(self.number * MINUTES_PER_NUMBER / 60.0)
         return replace(blade, blade_angle=blade.blade_angle + BLADE_SIGNS[flank] * -turn)
 
+    @property
+    def overlap_of_tips(self) -> str | None:
+        """What is wrong with blades that are rounded over more than the slot between their point radii; None: nothing.
+
+        A rounding of radius r touches the bottom of the slot r tan(45 deg - alpha/2) beside the sharp tip. Blades whose
+        point radii leave no slot are those of a gear of which one flank alone is meant.
+        """
+        if self.concave is None or self.convex is None:
+            return None
+        width = self.concave.point_radius - self.convex.point_radius
+        blades = [self.blade(flank) for flank in get_args(FlankName)]
+        rounded = sum(blade.edge_radius * tan(0.25 * pi - 0.5 * blade.blade_angle) for blade in blades)
+        if rounded <= width or width <= 0.0 or rounded == 0.0:
+            return None
+        return (
+            f"the rounded tips of both blades take {plain(rounded)} mm of a slot of {plain(width)} mm between their "
+            "point radii; allowed up to this width"
+        )
+
 
 Generation = Literal["generated", "formate"]
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import asin, atan, cos, degrees, inf, pi, sin, sqrt, tan
+from math import asin, atan, cos, degrees, inf, isclose, pi, sin, sqrt, tan
 from typing import Literal, get_args
 
 from loaded_tca.arrays import GEARS, real
@@ -33,6 +33,11 @@ from loaded_tca.plain import plain
 Taper = Literal["duplex", "standard", "uniform"]
 
 _ROUNDING = 1e-12
+SAME = 1e-9
+"""Relative, of lengths that are the same but for rounding."""
+ROLLING = 0.01
+"""Relative, by how much the mean normal modules of both gears may differ: iterations of ISO 23509 end at 1 %, and those
+of the pair in AGMA 929, annex D, differ by 0.4 %."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +75,8 @@ class HypoidBlank(BlankPair):
     Raises
     ------
     InputError
-        If values are out of range; every one is told.
+        If values are out of range, gears of these numbers of teeth do not roll on the pitch cones, or the cones were
+        found with another face width or cutter; every one is told.
     GeometryError
         If the cutter does not reach over the face, or a tooth or a slot is pointed.
 
@@ -127,6 +133,7 @@ class HypoidBlank(BlankPair):
             depth_angles_check(self.wheel_angles),
             (0.0 <= real(self.backlash) < inf, f"backlash: {self.backlash} mm is negative or not finite"),
         )
+        self._require_own_cones()
         if self.wheel_cone_distances[0] <= abs(self.cones.offset_in_pitch_plane):
             raise GeometryError(
                 f"face_width: {plain(self.face_width, 6)} mm reaches below the offset in the pitch plane, "
@@ -134,6 +141,30 @@ class HypoidBlank(BlankPair):
             )
         for gear in (self.pinion, self.wheel):
             gear.check(allow_undercut=True)  # of generated flanks it shows when they are made
+
+    def _require_own_cones(self) -> None:
+        """Refuse pitch cones of another pair."""
+        found = {name: getattr(self.pitch_cones, name) for name in ("face_width", "cutter_radius")}
+        modules = [
+            2.0 * radius * cos(spiral) / teeth
+            for radius, spiral, teeth in zip(self.cones.radii, self.pitch_cones.spiral_angles, self.teeth, strict=True)
+        ]
+        require(
+            *(
+                (
+                    value is None or isclose(getattr(self, name), value, rel_tol=SAME),
+                    f"{name}: found {plain(getattr(self, name), 6)} mm; allowed {plain(value or 0.0, 6)} mm, with "
+                    "which the pitch cones were found: with another one the outer diameter of the wheel or the "
+                    "curvature of its flanks is not the one asked for; find the cones anew",
+                )
+                for name, value in found.items()
+            ),
+            (
+                abs(modules[0] - modules[1]) <= ROLLING * modules[1],
+                f"teeth: found {self.teeth[0]} and {self.teeth[1]}, which do not roll on these pitch cones: mean "
+                f"normal modules of pinion and wheel are {plain(modules[0], 6)} and {plain(modules[1], 6)} mm",
+            ),
+        )
 
     @property
     def cones(self) -> HypoidCones:

@@ -34,11 +34,15 @@ class PitchConeParameters:
         beta_m1, beta_m2.
     face_width_factor : float
         c_be2: part of the wheel's face width from P to the heel.
+    face_width, cutter_radius : float [mm], optional
+        b_2 and r_c0 that the cones were found with, which blanks on them have, too; None: not known, as of a drawing.
     """
 
     cones: HypoidCones
     spiral_angles: Both
     face_width_factor: float
+    face_width: float | None = None
+    cutter_radius: float | None = None
 
 
 def pitch_cones_by_method_1(
@@ -189,7 +193,8 @@ class _MethodOne:
             )
         cones, spirals = self.cones(eta)
         outer = 0.5 * self.wheel_diameter / sin(cones.pitch_angles[1])
-        return PitchConeParameters(cones, spirals, (outer - cones.mean_cone_distances[1]) / self.face_width)
+        factor = (outer - cones.mean_cone_distances[1]) / self.face_width
+        return PitchConeParameters(cones, spirals, factor, self.face_width, self.cutter_radius)
 
 
 def _nearest_root(function: Callable[[float], float], start: float) -> float | None:

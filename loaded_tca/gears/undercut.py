@@ -102,10 +102,21 @@ def _lost_length(gear: CylindricalGear | RingGear, roll: float) -> float:
     return gear.roll_length(gear.form_radius) - wanted if height > NEGLIGIBLE * gear.normal_module else 0.0
 
 
-def undercut_sentences(mesh: CylindricalMesh | InternalMesh, place: str) -> Sequence[str]:
-    """Sentences on what undercuts take of the path of contact, with their sizes; ``place`` says where they do."""
+def undercut_sentences(
+    mesh: CylindricalMesh | InternalMesh, place: str, names: tuple[str, str] = GEARS
+) -> Sequence[str]:
+    """Sentences on what undercuts take of the path of contact, with their sizes.
+
+    Parameters
+    ----------
+    mesh : CylindricalMesh or InternalMesh
+    place : str
+        Where they do, in words.
+    names : (str, str)
+        What the sentences call both gears.
+    """
     sentences, gears = [], (mesh.pinion, mesh.wheel)
-    for name, gear, mating, cut in zip(GEARS, gears, GEARS[::-1], undercuts(mesh), strict=True):
+    for name, gear, mating, cut in zip(names, gears, names[::-1], undercuts(mesh), strict=True):
         if cut is None or not isinstance(gear, CylindricalGear):
             continue
         sentences.append(

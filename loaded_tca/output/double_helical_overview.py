@@ -9,7 +9,7 @@ import numpy as np
 from loaded_tca.arrays import GEARS
 from loaded_tca.double_helical.analyse import expected_double_helical_effort
 from loaded_tca.errors import noted_accuracy_warnings
-from loaded_tca.output.overview import scene_sections, spectrum_rows, torques_with_columns
+from loaded_tca.output.overview import mounting_rows, scene_sections, spectrum_rows, torques_with_columns
 from loaded_tca.output.overview_text import Overview
 from loaded_tca.plain import plain
 from loaded_tca.results.gear_warnings import warn_of_gears
@@ -78,7 +78,7 @@ def geometry_of_halves(
     for half, own in enumerate(scene.half_scenes(scene.mounting.axial_offset_mm)):
         with noted_accuracy_warnings(given=False) as sentences:
             warn_of_gears(own, own.pair())
-            sections = scene_sections(own, positions)
+            sections = scene_sections(own, positions, mounted=False)
         shown = {
             name: rows
             for name, rows in sections.items()
@@ -101,7 +101,7 @@ def bearing_rows_of_halves(scene: DoubleHelicalScene) -> Iterator[Row]:
 
 
 def pair_rows(scene: DoubleHelicalScene) -> list[Row]:
-    """Of both halves together: widths, hands, how the gears stand along the axes, torques and axial forces."""
+    """Of both halves together: widths, hands, how the gears stand, torques and axial forces."""
     geometry, gears = scene.geometry, (scene.pinion, scene.wheel)
     shown = torques_with_columns(scene.torques)
     mesh = scene.mesh()
@@ -117,6 +117,7 @@ def pair_rows(scene: DoubleHelicalScene) -> list[Row]:
         ("groove [mm]", fixed(geometry.gap_mm, 4)),
         ("floating along its axis", floats),
         ("apex of the wheel towards half a [mm]", fixed(geometry.apex_offset_mm, 4)),
+        *mounting_rows(scene),
         *([("apex runout, peak to peak [um]", *(plain(runout, 6) for runout in runouts))] if any(runouts) else []),
         ("pinion torque of both halves [N m]", *(f"{plain(1e-3 * torque, 6)}" for torque in shown)),
         *spectrum_rows(scene.load),

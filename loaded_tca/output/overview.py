@@ -67,11 +67,12 @@ def overview_of_scene(scene: Scene) -> Overview:
     )
 
 
-def scene_sections(scene: Scene, positions: int | None = None) -> dict[str, list[Row]]:
+def scene_sections(scene: Scene, positions: int | None = None, *, mounted: bool = True) -> dict[str, list[Row]]:
     """Return the lines of an overview by their subjects, each a label and its cells; errors as ``describe_scene``.
 
     A line without a label, and the first one of the path of contact, name the columns below them. ``positions``: those
-    of a whole revolution; default: of the pitch that the scene asks for.
+    of a whole revolution; default: of the pitch that the scene asks for. ``mounted``: whether mounting errors are
+    among them; those of a half of a double helical pair follow from the errors of the whole gear.
     """
     pair = scene.pair()
     return {
@@ -81,7 +82,7 @@ def scene_sections(scene: Scene, positions: int | None = None) -> dict[str, list
         "bearings": [*_bearing_rows(scene)],
         "ISO 6336": [*_standard_rows(scene, pair)],
         "strength and rating": [*_strength_rows(scene)],
-        "mounting errors, edges and modifications": [*_departures(scene)],
+        "mounting errors, edges and modifications": [*(mounting_rows(scene) if mounted else ()), *_departures(scene)],
         "pitch deviations": [*_pitch_rows(scene, pair)],
         "flanks described by points": [*_spline_rows(scene, pair)],
     }
@@ -202,9 +203,13 @@ def _strength_rows(scene: Scene) -> Iterator[Row]:
         )
 
 
+def mounting_rows(scene: Scene) -> list[Row]:
+    """Mounting errors of a scene by their keys, of half b of a double helical wheel too."""
+    return _changed(scene.mounting, "mounting.") or [("mounting errors", "none")]
+
+
 def _departures(scene: Scene) -> Iterator[Row]:
-    """Mounting errors, rounded edges and modifications that a scene asks for, by their keys."""
-    yield from _changed(scene.mounting, "mounting.") or [("mounting errors", "none")]
+    """Rounded edges and modifications that a scene asks for, by their keys."""
     for name, gear in (("pinion", scene.pinion), ("wheel", scene.wheel)):
         for edge, radius in (("tip", gear.tip_rounding_mm), ("side", gear.side_rounding_mm)):
             yield f"{name}.{edge}_rounding_mm", f"{plain(radius, 6)}" if radius else "sharp"
@@ -260,6 +265,11 @@ def _measured_rows(scene: Scene, name: str) -> Iterator[Row]:
 
 
 def _changed(section: Section, place: str) -> list[Row]:
-    """Values of a section that are not its defaults."""
-    usual = contents(type(section)())
-    return [(place + key, f"{value}") for key, value in contents(section).items() if value != usual[key]]
+    """Values of a section, and of those inside, that are not its defaults."""
+    usual, rows = contents(type(section)()), []
+    for key, value in contents(section).items():
+        if isinstance(value, Section):
+            rows += _changed(value, f"{place}{key}.")
+        elif value != usual[key]:
+            rows.append((place + key, f"{value}"))
+    return rows

@@ -10,13 +10,15 @@ StereoLithography Interface Specification.
 
 from __future__ import annotations
 
+import math
 import struct
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loaded_tca.arguments import checked
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, require
+from loaded_tca.plain import plain
 from loaded_tca.results.files import Buffer, FilePath, replace_file, replace_together
 
 if TYPE_CHECKING:
@@ -34,6 +36,8 @@ LONGEST_TITLE = 255
 """Bytes of the second line of a VTK file."""
 STL_HEADER = 80
 """Bytes before the number of triangles in an STL file."""
+FARTHEST = 1e4
+"""Sizes of a surface from the origin up to which single precision resolves a thousandth of its size."""
 _STL_RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
@@ -108,12 +112,21 @@ def write_stl(path: FilePath, mesh: TriangleMesh, title: str = "") -> None:
     Raises
     ------
     InputError
-        If the file cannot be written.
+        If the file cannot be written, or the surface lies so far from the origin that single precision has no room for
+        its triangles.
     """
     replace_file(path, _stl(mesh, title))
 
 
 def _stl(mesh: TriangleMesh, title: str) -> bytes:
+    if mesh.size:
+        away, size = float(np.abs(mesh.vertices).max()), float(np.ptp(mesh.vertices, axis=0).max())
+        far = (
+            f"the surface of {plain(size)} mm lies {plain(away)} mm from the origin; allowed up to {FARTHEST:g} sizes: "
+        )
+        require(
+            (away <= FARTHEST * size, f"vertices: {far}coordinates of STL files have seven digits; move the surface")
+        )
     records = np.zeros(len(mesh.triangles), dtype=_STL_RECORD)
     normals = mesh.normals
     records["normal"] = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
@@ -149,7 +162,7 @@ def write_teeth(
     title : str
         Said in the header of each file.
     whole_gears : bool
-        Whether the solids have all teeth, on their rim, instead of one.
+        Whether the solids have all teeth, on their rim, instead of one; of a rack those of its length.
     more : mapping of str to bytes
         Contents of files to write with these, by their names: a picture of the same teeth.
 
@@ -158,15 +171,28 @@ def write_teeth(
     tuple of Path
         ``pinion.vtk``, ``wheel.vtk``, ``pressure.vtk`` (fixed frame, teeth in contact; ``patch`` on each triangle of a
         tooth, ``pressure_MPa`` on each of the pressure), and ``pinion.stl``, ``wheel.stl`` (each in its gear's own
-        frame, closed), and those of ``more``.
+        frame, closed), and those of ``more``. The own frame of a rack begins on its reference line. Halves of a double
+        helical pair have their true hands in all files, and stand where they lie on the whole gears: z = 0 is the
+        middle of the groove, in the fixed frame that of the pinion.
 
     Raises
     ------
     InputError
-        If a file cannot be written.
+        If a file cannot be written, or a whole rack is asked for whose length is not given.
     """
-    solids = [tooth.triangles(tooth.teeth if whole_gears else 1, closed=True) for tooth in (teeth.pinion, teeth.wheel)]
-    surfaces = shown.pinion, shown.wheel, shown.pressure
+    faces = (None, None) if shown.mid_faces is None else shown.mid_faces.tolist()
+    solids = [
+        _on_whole_gear(tooth.solid(whole_gear=whole_gears), face)
+        for tooth, face in zip((teeth.pinion, teeth.wheel), faces, strict=True)
+    ]
+    surfaces = [_on_whole_gear(mesh, faces[0]) for mesh in (shown.pinion, shown.wheel, shown.pressure)]
     files: list[Buffer] = [b"".join(_vtk_parts(mesh, title)) for mesh in surfaces]
     files += [_stl(solid, title) for solid in solids]
     return replace_together(directory, {**dict(zip(TEETH_FILES, files, strict=True)), **more})
+
+
+def _on_whole_gear(mesh: TriangleMesh, mid_face: float | None) -> TriangleMesh:
+    """A surface of a half in the frame of the double helical gear: half b is mirrored back; others as they are."""
+    if mid_face is None:
+        return mesh
+    return mesh.moved(np.array([0.0, 0.0, mid_face]), np.diag([1.0, 1.0, math.copysign(1.0, mid_face)]))

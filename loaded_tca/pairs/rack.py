@@ -61,7 +61,12 @@ def rack_pair(
     """
     mesh = rack_mesh(pinion, rack, distance, mounting.axial_offset)
     wheel = RackTooth(
-        mesh.wheel, mesh.wheel_working_radius, mesh.wheel_active_profile, modifications[1], bed_depth=rack.bed_depth
+        mesh.wheel,
+        mesh.wheel_working_radius,
+        mesh.wheel_active_profile,
+        modifications[1],
+        bed_depth=rack.bed_depth,
+        length=rack.length,
     )
     place = replace(mounting, axial_offset=mesh.axial_offset)
     standing = mesh.working_centre_distance - rack.radius + place.centre_distance_error

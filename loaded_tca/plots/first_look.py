@@ -152,18 +152,18 @@ def _modifications(scene: Scene, pair: GearPair) -> list[Callable[[Axes], None]]
         "along the face, middle of the profile": [_along_face(gear) for gear in gears],
     }
     return [
-        _panel_of(title, curves)
+        _panel_of(title, curves, scene.gear_names)
         for title, curves in lines.items()
         if any(np.abs(removed).max() > LEAST_um for _, _, removed in curves)
     ]
 
 
-def _panel_of(title: str, curves: list[tuple[str, Array, Array]]) -> Callable[[Axes], None]:
+def _panel_of(title: str, curves: list[tuple[str, Array, Array]], names: tuple[str, str]) -> Callable[[Axes], None]:
     """Draws the material removed from both flanks over a coordinate."""
 
     def draw(axes: Axes) -> None:
         for member, (label, place, removed) in enumerate(curves):
-            about: dict[str, Any] = {"color": LINES[member], "label": GEARS[member]}
+            about: dict[str, Any] = {"color": LINES[member], "label": names[member]}
             axes.plot(place, removed, DASHES[member], **about)
             axes.set_xlabel(label)
         axes.legend(fontsize="x-small")

@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from loaded_tca.arrays import GEARS, Array
+from loaded_tca.arrays import Array
 from loaded_tca.gears import undercuts
 from loaded_tca.gears.chamfer import tip_half_angle
 from loaded_tca.plots.style import ACCENT, write_title
@@ -28,8 +28,8 @@ POINTS = 40
 """Along each part of half a tooth."""
 PITCHES = 1.9
 """Of the working circle, to either side of the pitch point that are shown."""
-CLOSE = 0.04
-"""Base pitches between points of the line of action that have one label."""
+CLOSE = 0.12
+"""Base pitches between points of the line of action that have one label: about the width of two letters."""
 BODY = 1.6
 """Modules below the roots that are shown."""
 FILLS = "#cfe2f1", "#f8dfc4"
@@ -165,16 +165,17 @@ def draw_teeth_in_mesh(axes: Axes, scene: CylindricalScene) -> None:
     mirrored = (scene.geometry.driving == "pinion") != (scene.sense == "positive")
     side = -1.0 if mirrored else 1.0
     gears, module, width = _gears_of(mesh, side), mesh.pinion.normal_module, _half_width(mesh)
-    for name, one, fill, line in zip(GEARS, gears, FILLS, LINES, strict=True):
-        teeth = f"{name}, {abs(one.gear.teeth)} teeth" + (" (ring)" if one.gear.teeth < 0 else "")
-        teeth = "rack" if name == "wheel" and scene.rack_radius else teeth
+    names, is_rack = scene.gear_names, scene.rack_radius is not None
+    for name, one, fill, line, counted in zip(names, gears, FILLS, LINES, (True, not is_rack), strict=True):
+        number = f", {abs(one.gear.teeth)} teeth" if counted else ""
+        teeth = f"{name}{number}" + (" (ring)" if one.gear.teeth < 0 else "")
         axes.fill(*one.outline(width, 6.0 * module), facecolor=fill, edgecolor=line, linewidth=1.2, label=teeth)
         _draw_circles(axes, one, line, width)
     _draw_path(axes, mesh, side)
     _draw_clearances(axes, mesh, gears, side)
     axes.set(xlim=(-width, width), ylim=_ends(mesh), aspect="equal")
     axes.set_xlabel("from the line of centres [mm]")
-    axes.set_ylabel("from the pitch point, towards the wheel [mm]")
+    axes.set_ylabel(f"from the pitch point, towards the {names[1]} [mm]")
 
 
 def numbers_of_teeth(scene: CylindricalScene) -> Iterator[str]:
@@ -184,7 +185,7 @@ def numbers_of_teeth(scene: CylindricalScene) -> Iterator[str]:
     turns = "counter-clockwise" if scene.sense == "positive" else "clockwise"
     yield f"{scene.geometry.driving} drives, pinion turns {turns}"
     yield f"mounted with an error of the centre distance of {error:+.4f} mm" if error else ""
-    for number in _numbers(mesh, scene.rack_radius):
+    for number in _numbers(mesh, scene.rack_radius, scene.gear_names):
         yield number.replace(" mm", "\N{NO-BREAK SPACE}mm")
 
 
@@ -275,7 +276,7 @@ def _draw_clearances(
     axes.annotate(label, (x[0], y[0]), text, ha="center", arrowprops=arrow, **about)
 
 
-def _numbers(mesh: CylindricalMesh | InternalMesh, rack_radius: float | None) -> Iterator[str]:
+def _numbers(mesh: CylindricalMesh | InternalMesh, rack_radius: float | None, names: tuple[str, str]) -> Iterator[str]:
     """What is read off the picture, with its units; a rack's reference line is so far from the wheel's axis."""
     pinion, wheel = mesh.tip_clearances
     place = "reference line of the rack from the axis of the pinion" if rack_radius else "centre distance"
@@ -284,8 +285,8 @@ def _numbers(mesh: CylindricalMesh | InternalMesh, rack_radius: float | None) ->
     path = mesh.path_of_contact
     yield f"path of contact A to E {path.AE:.4f} mm, contact ratio {mesh.transverse_contact_ratio:.4f}"
     yield f"backlash j_wt {_rounded(mesh.backlash):.4f} mm, normal j_bn {_rounded(mesh.normal_backlash):.4f} mm"
-    yield f"tip clearance at the root of the pinion {pinion:.4f} mm, of the wheel {wheel:.4f} mm"
-    for name, cut in zip(GEARS, undercuts(mesh), strict=True):
+    yield f"tip clearance at the root of the {names[0]} {pinion:.4f} mm, of the {names[1]} {wheel:.4f} mm"
+    for name, cut in zip(names, undercuts(mesh), strict=True):
         if cut is not None:
             yield f"undercut of the {name}: {cut.lost_length:.4f} mm of the path are lost, {cut.lost_share:.1%}"
 

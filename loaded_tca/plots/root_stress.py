@@ -146,7 +146,7 @@ def plot_root_stress_cycle(result: MeshCycle) -> Figure:
         axes.axhline(0.0, color="black", linewidth=0.8)
         for change in changes:
             axes.axvline(change, color="0.5", linewidth=0.8, linestyle=":")
-        axes.set_title(GEARS[gear], fontsize="medium")
+        axes.set_title(result.scene.gear_names[gear], fontsize="medium")
         axes.set_xlabel("pinion angle [deg]")
         axes.grid(alpha=0.3)
     panels[0].set_ylabel("root stress [MPa]")

@@ -108,9 +108,10 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
     axes.plot(*shown.path.T, ".", color=ACCENT, markersize=3.0)
     axes.add_collection3d(_solid(shown.wheel, WHEEL, SEE_THROUGH, shown.eye))
     axes.add_collection3d(_lines(shown.wheel, side))
+    names = result.scene.gear_names
     handles = [
-        Patch(facecolor=PINION, label="pinion's tooth"),
-        Patch(facecolor=WHEEL, alpha=SEE_THROUGH, label="wheel's tooth, see-through"),
+        Patch(facecolor=PINION, label=f"{names[0]}'s tooth"),
+        Patch(facecolor=WHEEL, alpha=SEE_THROUGH, label=f"{names[1]}'s tooth, see-through"),
         Line2D([], [], color=ACCENT, marker=".", linestyle="", label="unloaded contact points of all positions"),
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize="small")

@@ -185,6 +185,16 @@ ROOT_MAPS: dict[str, Part] = {
 """The same by their names in a file; places along the face are as many as the width of each gear asks for."""
 ROOT_PARTS = ROOT_QUANTITIES | ROOT_MAPS
 
+HALF_QUANTITIES: dict[str, Part] = {
+    "mid_face": (
+        ("gear",),
+        "mm",
+        "axial place of the middle of the face of a half in the double helical gear, from the middle of its groove; "
+        "half a lies at positive places, half b, whose result is that of its mirror image, at negative ones",
+    ),
+}
+"""Numbers of both gears that the result of a half of a double helical pair has."""
+
 MOTION = (*CYCLE, "motion")
 SUPPORT_QUANTITIES: dict[str, Part] = {
     "pinion_motion": (
@@ -372,7 +382,8 @@ ROLLING_ASKED = Asked(  # which a file has where the scene does
 RACK_ASKED = Asked(
     lambda scene, _: scene.rack_radius is not None, 'the wheel is no rack; wheel.teeth = "rack" makes it one'
 )
-"""When a result has numbers of root stress, of supports, of shafts, of rolling bearings and of racks."""
+HALF_ASKED = Asked(lambda *_: False, "the result is not one of a half of a double helical pair")
+"""When a result has numbers of root stress, of supports, of shafts, of rolling bearings, of racks and of halves."""
 OF_SUPPORTS = {
     **numbers(SUPPORT_QUANTITIES, SUPPORTS_ASKED),
     **numbers(BEARING_QUANTITIES, SHAFT_ASKED),
@@ -380,5 +391,6 @@ OF_SUPPORTS = {
 }
 ROOT_STRESS = numbers(ROOT_PARTS, ROOTS_ASKED)
 OF_RACKS = numbers(RACK_QUANTITIES, RACK_ASKED)
-CYCLE_NUMBERS = numbers(QUANTITIES) | OF_SUPPORTS | ROOT_STRESS | OF_RACKS
-"""All numbers of mesh cycles by their names: those that all have, of supports, of root stress, of racks."""
+OF_A_HALF = numbers(HALF_QUANTITIES, HALF_ASKED)
+CYCLE_NUMBERS = numbers(QUANTITIES) | OF_SUPPORTS | ROOT_STRESS | OF_RACKS | OF_A_HALF
+"""All numbers of mesh cycles by their names: those that all have, of supports, of root stress, of racks, of halves."""

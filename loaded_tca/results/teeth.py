@@ -35,6 +35,8 @@ class TeethInSpace:
         Cells under pressure on the pinion's flank, ``cell_data["pressure_MPa"]``; none without load.
     point, normal : (3,) array
         The contact point [mm] and the normal out of the pinion.
+    mid_faces : (2,) array [mm], optional
+        Of a half of a double helical pair: ``mid_face`` of the result; None of other pairs.
     """
 
     pair: GearPair
@@ -47,6 +49,7 @@ class TeethInSpace:
     pressure: TriangleMesh
     point: Array
     normal: Array
+    mid_faces: Array | None = None
 
     @property
     def eye(self) -> Array:
@@ -105,4 +108,5 @@ def teeth_in_space(
         teeth.pressure_on_pinion(one.corners, one.pressure, pinion_angle),
         contact.point,
         contact.normal,
+        result.values("mid_face") if result.has("mid_face") else None,
     )

@@ -82,6 +82,7 @@ def _hypoid_rows(mesh: HypoidMesh, pinion: FlankAngles, wheel: FlankAngles) -> l
     cones, blanks = mesh.cones, (mesh.pinion.blank, mesh.wheel.blank)
     spirals = cones.rolling_spiral_angles((mesh.pinion.teeth, mesh.wheel.teeth))
     limit = limit_pressure_angle(cones, spirals)
+    module = 2.0 * cones.radii[1] * cos(spirals[1]) / mesh.wheel.teeth
     misses = abs(pinion.spiral) - abs(wheel.spiral) - cones.offset_angle, pinion.pressure - wheel.pressure
     ends = [(blank.outer_cone_distance, blank.mean_cone_distance, blank.cone_distances[0]) for blank in blanks]
     return [
@@ -93,6 +94,7 @@ def _hypoid_rows(mesh: HypoidMesh, pinion: FlankAngles, wheel: FlankAngles) -> l
             _deg(cones.offset_angle),
         ),
         ("limit pressure angle alpha_lim [deg]", _deg(limit)),
+        ("mean normal module m_mn, of the wheel [mm]", fixed(module, 4)),
         (
             Label("spiral angles that roll on each other [deg]", "spiral_angles_that_roll_on_each_other_deg", *GEARS),
             *(_deg(angle) for angle in spirals),

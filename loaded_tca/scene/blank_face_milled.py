@@ -55,8 +55,8 @@ class Geometry(bevel.Geometry):
         rule(
             ("offset_mm",),
             lambda offset: offset == 0.0,
-            "found {0:g}; with [pair.blank] axes meet: give the settings of a hypoid pair, as gears.HypoidBlank and "
-            "flanks.hypoid_synthesis make them",
+            "found {0:g}; with [pair.blank] axes meet: give the settings of a hypoid pair, as loaded_tca.gears."
+            "HypoidBlank and loaded_tca.flanks.synthesised_gears make them (docs/guide/hypoid_pair.md)",
         ),
         spiral.FLANK_OR_SENSE,
         spiral.ONE_PRESSURE_ANGLE,
@@ -166,6 +166,10 @@ class BlankFaceMilledScene(BevelScene):
     def interferences(self) -> Sequence[str]:
         """Return how the whole gears interfere without mounting errors."""
         return self.cut.interferences()
+
+    def missing_shifts(self) -> Sequence[str]:
+        """Return a sentence on teeth that are thin beside their spaces."""
+        return self.cut.missing_shifts()
 
     def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:
         """Return the forces under pinion torques [N mm]."""

@@ -9,11 +9,12 @@ from functools import cached_property
 from math import cos, degrees, isclose, radians
 from typing import Any, ClassVar, Literal
 
+import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS
-from loaded_tca.errors import require
+from loaded_tca.errors import InputError, require
 from loaded_tca.gears import face_milled
 from loaded_tca.gears.bevel import pitch_angles
-from loaded_tca.gears.cylindrical_mesh import AT_MID_FACE, interferences
+from loaded_tca.gears.cylindrical_mesh import AT_MID_FACE, Room, interferences
 from loaded_tca.gears.face_milled import FaceMilledBlank, FaceMilledGear, FaceMilledMesh, MachineSettings
 from loaded_tca.gears.hypoid import HypoidCones
 from loaded_tca.pairs.bevel import BevelMounting, face_milled_pair
@@ -28,6 +29,7 @@ from loaded_tca.scene.parse import family
 from loaded_tca.scene.section import Rule, Section, entries, rule, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, Pair, end_reliefs_within
 from loaded_tca.scene.spiral import MountingErrors, SpiralScene
+from loaded_tca.scene.thickness import MOST_BACKLASH
 from loaded_tca.units import factor_of, without_unit
 
 LENGTH_mm = above_zero(10000.0)
@@ -168,6 +170,18 @@ def _in_range_with_number(flank: Literal["concave", "convex"]) -> Rule:
     return Rule(("number", f"{flank}.blade_angle_deg"), complain)
 
 
+def _tips_overlap(radius: float, number: float, *blades: Blade | None) -> str | None:
+    """What is wrong with two blades of a slot that are rounded over more than its width."""
+    outside, inside = (None if blade is None else face_milled.Blade(**in_base_units(blade)) for blade in blades)
+    try:
+        problem = face_milled.Cutter(outside, inside, number).overlap_of_tips
+    except InputError:  # the number turns a blade beyond its range, which a rule of its own refuses
+        return None
+    if inside is None or problem is None:
+        return None
+    return f"found {plain(radius, 6)} beside convex.edge_radius_mm = {plain(inside.edge_radius, 6)}; {problem}"
+
+
 @dataclass(frozen=True, kw_only=True)
 class Cutter(Section):
     """[pinion.cutter], [wheel.cutter]."""
@@ -188,6 +202,7 @@ class Cutter(Section):
         ),
         _in_range_with_number("concave"),
         _in_range_with_number("convex"),
+        Rule(("concave.edge_radius_mm", "number", "concave", "convex"), _tips_overlap),
     )
 
 
@@ -357,8 +372,19 @@ class FaceMilledScene(SpiralScene):
 
     def interferences(self) -> Sequence[str]:
         """Return how the whole gears interfere without mounting errors; tips below form lines are those of the path."""
-        mesh, sides = self.mesh(), self.sides(self.sense)
-        return interferences(*bevel_rows.room_and_module(mesh, sides), AT_MID_FACE)
+        return interferences(*self._room_and_module, AT_MID_FACE)
+
+    @property
+    def _room_and_module(self) -> tuple[Room, float]:
+        """Room of the whole gears at mid-face, and the mean normal module [mm]."""
+        return bevel_rows.room_and_module(self.mesh(), self.sides(self.sense))
+
+    def missing_shifts(self) -> Sequence[str]:
+        """Return a sentence on teeth that are thin beside their spaces."""
+        room, module = self._room_and_module
+        if room.backlash <= MOST_BACKLASH * module:
+            return ()
+        return [kinds.WIDE_SPACES.sentence(backlash=room.backlash, modules=room.backlash / module)]
 
 
 def _gear(own: GearSection, name: str, pitch_angle: float) -> FaceMilledGear:
@@ -389,6 +415,8 @@ def _require_blades(mesh: FaceMilledMesh, sides: tuple[spiral.Side, spiral.Side]
     require(*((getattr(gear.cutter, side) is not None, message.format(gear.name, side)) for gear, side in for_each))
 
 
+DIGITS = 12
+"""Decimals of shaft angle and offset, which follow from the cones with a rounding error of some 1e-15."""
 DEFAULTS: tuple[Any, ...] = (None, 0.0)
 """Values of keys that a table can leave out."""
 
@@ -414,7 +442,8 @@ def hypoid_table(gears: tuple[FaceMilledGear, FaceMilledGear], cones: HypoidCone
     >>> round(table["pair"]["offset_mm"], 9), round(table["wheel"]["blank"]["face_apex_mm"], 4)
     (15.0, 1.8052)
     """
-    pair = {"type": "face_milled", "shaft_angle_deg": degrees(cones.shaft_angle), "offset_mm": cones.offset}
+    axes = {"shaft_angle_deg": degrees(cones.shaft_angle), "offset_mm": cones.offset}
+    pair = {"type": "face_milled"} | {key: round(value, DIGITS) for key, value in axes.items()}
     sections = (_gear_table(gear, beyond) for gear, beyond in zip(gears, cones.apexes, strict=True))
     return {"pair": pair} | dict(zip(GEARS, sections, strict=True))
 

@@ -9,7 +9,7 @@ from typing import Any
 from loaded_tca.plain import plain
 from loaded_tca.scene.keys import Key, literal
 from loaded_tca.scene.parse import FAMILIES, VARIANTS
-from loaded_tca.scene.section import Section, Subsection, entries
+from loaded_tca.scene.section import Section, Subsection, entries, refused_keys
 from loaded_tca.scene.variants import MODULES
 from loaded_tca.scene.written import MODULE, PITCH, INCH_mm
 from loaded_tca.units import INCHES, UNITS, conversion
@@ -161,7 +161,10 @@ def section_reference(
     known: dict[str, Any] = {}
     if of_family is not None and adds:
         known = {name: entry for name, (_, entry) in entries(of_family).items()}
-    others = {name: entry for name, (_, entry) in entries(section).items() if entry != known.get(name)}
+    refused = refused_keys(section)
+    others = {
+        name: entry for name, (_, entry) in entries(section).items() if entry != known.get(name) and name not in refused
+    }
     rows = [_row(name, entry) for name, entry in others.items() if isinstance(entry, Key)]
     if of_family is None or section.equivalents != of_family.equivalents:
         rows += [

@@ -451,9 +451,14 @@ class Scene(InNotebooks, WithStandards, ABC):
         """
 
     @property
+    def gear_names(self) -> tuple[str, str]:
+        """Names of pinion and wheel in pictures."""
+        return GEARS
+
+    @property
     def flank_names(self) -> tuple[str, str]:
         """Names of the two flanks in contact in pictures."""
-        return GEARS
+        return self.gear_names
 
     @property
     def materials(self) -> tuple[ElasticMaterial, ElasticMaterial]:

@@ -15,7 +15,7 @@ from loaded_tca.arguments import checked
 from loaded_tca.errors import InputError
 from loaded_tca.input_files import read_text
 from loaded_tca.scene.keys import Choice, literal, shown, shown_key
-from loaded_tca.scene.section import Refusal, Section, Subsection, as_given, check, contents, entries, made
+from loaded_tca.scene.section import Section, Subsection, as_given, check, contents, entries, made, refused_keys
 from loaded_tca.scene.variants import MODULES
 
 if TYPE_CHECKING:
@@ -284,7 +284,7 @@ def toml_lines(section: Section, path: str) -> list[str]:
     """Keys first, then the sections inside, each under its header."""
     keys, sections = [], []
     values = contents(section)
-    refused = {name for rule in section.rules if isinstance(rule, Refusal) for name in rule.keys}
+    refused = refused_keys(type(section))
     for name, (_, entry) in entries(type(section)).items():
         value = values[name]
         if name in refused:

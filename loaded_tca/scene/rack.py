@@ -13,6 +13,7 @@ from loaded_tca.flanks.modification import FlankModifications
 from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.gears.cylindrical_mesh import ROUNDING, CylindricalMesh, interferences
 from loaded_tca.gears.rack import Rack, rack_mesh
+from loaded_tca.gears.undercut import undercut_sentences
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.pairs.rack import rack_pair
 from loaded_tca.plain import plain
@@ -145,6 +146,12 @@ class RackScene(CylindricalScene):
         *(demand for demand in Scene.rules if demand not in REVOLUTION_RULES),
         opposite_hands(),
         Rule(("wheel.length_mm", "rating"), _needs_length),
+        rule(
+            ("rating.tolerance_class",),
+            lambda given: given is None,
+            "found {0}; not allowed with a rack, of which ISO 1328-1 has no classes: give rating.dynamic_factor = "
+            '"given" and rating.transverse_load_factor = "analysis" or a number',
+        ),
         *(
             rule(
                 (name,),
@@ -243,8 +250,8 @@ class RackScene(CylindricalScene):
         return self.pinion.teeth * self.rack.pitch / self.wheel.length_mm
 
     @property
-    def flank_names(self) -> tuple[str, str]:
-        """Names of the two flanks in contact in pictures."""
+    def gear_names(self) -> tuple[str, str]:
+        """Names of pinion and wheel in pictures."""
         return "pinion", "rack"
 
     def held_row(self, pair: GearPair) -> Row:
@@ -318,10 +325,11 @@ class RackScene(CylindricalScene):
         return thick or (odd_tip(self._gear, self.pinion) if self.pinion.profile_shift is None and not follows else [])
 
     def interferences(self) -> Sequence[str]:
-        """Return how pinion and rack interfere at their distance, its error included."""
+        """Return how pinion and rack interfere at their distance, its error included, and what an undercut takes."""
         mesh, error = self.mesh(), self.mounting.centre_distance_error_mm
         module = mesh.pinion.normal_module
         place = f"at the {'mounted ' if error else ''}distance of {self.distance + error:z.4f} mm"
         nominal = abs(mesh.backlash) <= ROUNDING * module
         mounted = rack_mesh(self._gear, self.rack, self.distance + error, mesh.axial_offset) if error else mesh
-        return interferences(mounted.room, module, place, nominal=nominal)
+        jams = interferences(mounted.room, module, place, nominal=nominal)
+        return [*jams, *undercut_sentences(mounted, place, self.gear_names)]

@@ -113,6 +113,11 @@ def refusal(name: str, problem: str) -> Refusal:
     return Refusal((name,), lambda value: None if value is None or value == () else Sentence().format(problem, value))
 
 
+def refused_keys(section: type[Section]) -> set[str]:
+    """Return the keys that a section has from its base and refuses."""
+    return {name for demand in section.rules if isinstance(demand, Refusal) for name in demand.keys}
+
+
 def rule(keys: tuple[str, ...], holds: Callable[..., bool], problem: str) -> Rule:
     """Return the rule that values fulfil where ``holds``; ``problem`` is a format of them, ``{0}`` the first."""
     return Rule(keys, lambda *values: None if holds(*values) else Sentence().format(problem, *values))

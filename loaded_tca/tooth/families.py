@@ -90,6 +90,25 @@ class Bore(Held):
 
 
 @dataclass(frozen=True)
+class StraightRow:
+    """Teeth of a rack, which stand side by side along a straight line.
+
+    Attributes
+    ----------
+    reference_radius : float [mm]
+        From the axis of the gear that stands for the rack to the reference line.
+    pitch : float [mm]
+        Along this line, in the transverse section.
+    teeth : int, optional
+        Whole teeth of the toothed part; None: its length is not given.
+    """
+
+    reference_radius: float
+    pitch: float
+    teeth: int | None = None
+
+
+@dataclass(frozen=True)
 class ToothForm:
     """Form of a tooth without its flanks: thickness, root surface and fillet.
 
@@ -107,6 +126,8 @@ class ToothForm:
         Whether an arc that does not fit into the space is made smaller, instead of an error.
     held : Held
         What the gear is held by.
+    row : StraightRow, optional
+        Of the teeth of a rack; None: the teeth stand about the axis.
     """
 
     teeth: int
@@ -116,6 +137,7 @@ class ToothForm:
     fillet: Fillet
     largest_that_fits: bool = False
     held: Held = Bore()
+    row: StraightRow | None = None
 
     def with_arc(self, radius: float) -> ToothForm:
         """The form with arcs of a radius [mm], at the mean section, instead of the fillet that belongs to the gear.

@@ -10,8 +10,10 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.flanks.base import CylinderFrame, Flank, Point
 from loaded_tca.plain import plain
-from loaded_tca.tooth.families import CylindricalTooth, Held, ToothForm
+from loaded_tca.tooth.families import CylindricalTooth, Held, StraightRow, ToothForm
 
+ROUNDING = 1e-9
+"""Of a pitch, by which a toothed part of whole pitches may be short."""
 REACH = 4.0
 """Body beyond the teeth that are modelled, over the depth of the bed: of a wheel of 1e4 teeth 3 left out 3e-5 of the
 transmission error of the whole ring, 1.5 left out 4e-4, 6 less than 1e-6."""
@@ -92,9 +94,12 @@ class RackTooth(CylindricalTooth):
         As of every ``InvoluteTooth``.
     bed_depth : float [mm]
         Below the root line.
+    length : float [mm], optional
+        Of the toothed part, along the travel.
     """
 
     bed_depth: float = 0.0
+    length: float | None = None
 
     def nominal(self, side: int) -> Flank:
         """Flank of a side, shown by heights above the reference line."""
@@ -103,5 +108,8 @@ class RackTooth(CylindricalTooth):
         return flank
 
     def form(self) -> ToothForm:
-        """Form of a cylindrical gear, held by its bed."""
-        return replace(super().form(), held=Bed(self.bed_depth))
+        """Form of a cylindrical gear, held by its bed, whose teeth stand along the reference line."""
+        radius = self.gear.reference_radius
+        pitch = 2.0 * math.pi * radius / self.gear.teeth
+        teeth = None if self.length is None else int(self.length / pitch + ROUNDING)
+        return replace(super().form(), held=Bed(self.bed_depth), row=StraightRow(radius, pitch, teeth))

@@ -21,7 +21,7 @@ from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import RoundedFlank, sharp
 from loaded_tca.plain import plain
-from loaded_tca.tooth.families import ToothForm
+from loaded_tca.tooth.families import StraightRow, ToothForm
 from loaded_tca.tooth.fillet import ArcFillet, Fillet, FilletCurve, Profile, in_space, profile_of
 
 
@@ -119,8 +119,13 @@ class TriangleMesh:
         return self.vertices[edges[differs | ~(paired | second)]]
 
     def moved(self, origin: Array, axes: Array) -> TriangleMesh:
-        """Return the mesh in the frame in which its own has this ``origin`` (3,) and these ``axes`` (3, 3), in rows."""
-        return replace(self, vertices=origin + self.vertices @ axes)
+        """Return the mesh in the frame in which its own has this ``origin`` (3,) and these ``axes`` (3, 3), in rows.
+
+        Left-handed axes mirror the mesh: the corners of its triangles then follow each other the other way round, so
+        that the outside stays outside.
+        """
+        turned = self.triangles if np.linalg.det(axes) > 0.0 else self.triangles[:, ::-1]
+        return replace(self, vertices=origin + self.vertices @ axes, triangles=turned)
 
     def __repr__(self) -> str:
         return f"TriangleMesh({self.size} vertices, {len(self.triangles)} triangles)"
@@ -165,6 +170,8 @@ class ToothSurface:
         Number of teeth of the gear.
     half_thickness_angle : float [rad]
         From the middle of the tooth to the point of either flank where Theta = 0.
+    row : StraightRow, optional
+        Of the teeth of a rack; None: the teeth stand about the axis.
     """
 
     outline: Array
@@ -172,6 +179,7 @@ class ToothSurface:
     joints: tuple[int, ...]
     teeth: int
     half_thickness_angle: float
+    row: StraightRow | None = None
 
     def patch(self, name: str) -> Array:
         """Points (k, m, 3) of one of ``PATCHES`` [mm]; InputError if there is none of this name."""
@@ -191,7 +199,7 @@ class ToothSurface:
         Parameters
         ----------
         copies : int
-            Teeth, each a pitch further; all of the gear's: a ring.
+            Teeth, each a pitch further; all of the gear's: a ring. Those of a rack stand along a straight line.
         closed : bool
             Whether to close both ends of the face, the inside of the rim, and the cuts towards further teeth.
 
@@ -213,7 +221,7 @@ class ToothSurface:
             tooth = outline[copy * last : (copy + 1) * last + 1]
             ends = zip(self.joints, self.joints[1:], strict=False)
             parts += [(grid_triangles(tooth[a : b + 1]), number) for number, (a, b) in enumerate(ends)]
-            parts += _closing(tooth, foot[copy : copy + 2]) if closed else []
+            parts += _closing(tooth, foot[copy : copy + 2], self.joints[1], self.joints[3]) if closed else []
         if closed and copies < self.teeth:
             cuts = np.stack([foot[0], outline[0]]), np.stack([outline[-1], foot[-1]])
             parts += [(grid_triangles(index), CLOSING["cut"]) for index in cuts]
@@ -221,18 +229,48 @@ class ToothSurface:
         patch = np.concatenate([np.full(len(of_part), number) for of_part, number in parts])
         return TriangleMesh(vertices[used], triangles.reshape(-1, 3), cell_data={"patch": patch})
 
+    def solid(self, *, whole_gear: bool = False) -> TriangleMesh:
+        """Closed surface of one tooth on its rim, or of the whole gear, in the gear's own frame.
+
+        The origin of a rack's own frame lies on its reference line, in the middle of the first tooth at mid-face: x
+        points out of the teeth, y along the travel. A whole rack has the whole teeth of its toothed part.
+
+        Parameters
+        ----------
+        whole_gear : bool
+
+        Raises
+        ------
+        InputError
+            If a whole rack is asked for whose length is not given.
+        """
+        if self.row is None:
+            return self.triangles(self.teeth if whole_gear else 1, closed=True)
+        teeth = self.row.teeth if whole_gear else 1
+        if teeth is None:
+            raise InputError("whole gears: found a rack of no given length; give wheel.length_mm, or take one tooth")
+        return self.triangles(teeth, closed=True).moved(np.array([-self.row.reference_radius, 0.0, 0.0]), np.eye(3))
+
     def _repeated(self, copies: int) -> tuple[Array, Indices, Indices]:
         """Vertices of several teeth, and their indices along all outlines and along the feet of all borders."""
         last, ring = len(self.outline) - 1, copies == self.teeth
-        turns = [_turn(2.0 * math.pi * copy / self.teeth) for copy in range(copies)]
-        outline = [self.outline[:last] @ turn for turn in turns] + ([] if ring else [self.outline[last:] @ turns[-1]])
-        foot = [self.foot[:1] @ turn for turn in turns] + ([] if ring else [self.foot[1:] @ turns[-1]])
+        outline = [self._further(self.outline[:last], copy) for copy in range(copies)]
+        foot = [self._further(self.foot[:1], copy) for copy in range(copies)]
+        if not ring:
+            outline.append(self._further(self.outline[last:], copies - 1))
+            foot.append(self._further(self.foot[1:], copies - 1))
         points = np.concatenate(outline + foot)
         index = np.arange(points[..., 0].size).reshape(points.shape[:2])
         along, below = np.split(index, [sum(map(len, outline))])
         if ring:
             along, below = (np.concatenate([rows, rows[:1]]) for rows in (along, below))
         return points.reshape(-1, 3), along, below
+
+    def _further(self, points: Array, pitches: int) -> Array:
+        """Points (..., 3) of the tooth on that some pitches further [mm]."""
+        if self.row is None:
+            return points @ _turn(2.0 * math.pi * pitches / self.teeth)
+        return points + np.array([0.0, self.row.pitch * pitches, 0.0])
 
     def __repr__(self) -> str:
         n, m, _ = self.outline.shape
@@ -245,12 +283,22 @@ def _turn(angle: float) -> Array:
     return np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
 
 
-def _closing(tooth: Indices, foot: Indices) -> list[tuple[Indices, int]]:
-    """Triangles of both ends of the face, in strips from side to side, and of the foot of one tooth."""
-    half = (len(tooth) + 1) // 2
-    across = np.concatenate([foot[None], np.stack([tooth[:half], tooth[::-1][:half]], axis=1)])
-    triangles_at = {"lower side": across[:, ::-1, 0], "upper side": across[:, :, -1], "foot": foot[::-1]}
-    return [(grid_triangles(index), CLOSING[name]) for name, index in triangles_at.items()]
+def _closing(tooth: Indices, foot: Indices, root: int, tip: int) -> list[tuple[Indices, int]]:
+    """Triangles of both ends of the face and of the foot of one tooth.
+
+    The ends are strips from side to side, from where the root lands end (``root``) to below the tip land (from ``tip``
+    on), and fans to the points of these lands: strips between points of a land would have no area where the land is
+    straight, as on a rack.
+    """
+    strips = np.concatenate([foot[None], np.stack([tooth[root:tip], tooth[::-1][root:tip]], axis=1)])
+    lands = tooth[: root + 1], tooth[-root - 1 :]
+    fans = [np.stack([np.broadcast_to(below, along.shape), along]) for below, along in zip(foot, lands, strict=True)]
+    top = tooth[tip : len(tooth) - tip]
+    below = np.concatenate([np.broadcast_to(tooth[tip - 1], top.shape), tooth[-tip : len(tooth) - tip + 1]])
+    ends = strips, *fans, np.stack([below, np.concatenate([top, top[-1:]])])  # upwards, from left to right
+    triangles_at = [("lower side", index[:, ::-1, 0]) for index in ends]
+    triangles_at += [("upper side", index[:, :, -1]) for index in ends]
+    return [(grid_triangles(index), CLOSING[name]) for name, index in (*triangles_at, ("foot", foot[::-1]))]
 
 
 OVERLAP = 1e-3
@@ -350,6 +398,7 @@ def build_tooth(flanks: tuple[Flank, Flank], form: ToothForm, resolution: Resolu
         tuple(np.cumsum([0, *(count - 1 for count in (*steps, land, *steps[::-1]))]).tolist()),
         form.teeth,
         form.half_thickness_angle,
+        form.row,
     )
 
 

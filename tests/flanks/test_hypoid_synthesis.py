@@ -179,6 +179,13 @@ test_synthesis_refuses = refused_calls(
         lambda: synthesised_gears(hypoid_blank(), "straight", wheel="rolled"),
         ("^pinion_hand: 'straight' is not", "^wheel: 'rolled' is not"),
     ),
+    (
+        lambda: synthesised_gears(hypoid_blank(), edge_radii=(3.0, 3.0)),
+        (
+            r"^edge_radii: found 3 mm of the pinion; the rounded tips of both blades take 4\.\d+ mm of a slot of 1\.66",
+            r"^edge_radii: found 3 mm of the wheel; the rounded tips of both blades take 4\.\d+ mm of a slot of 2\.07",
+        ),
+    ),
 )
 
 

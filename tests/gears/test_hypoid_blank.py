@@ -144,6 +144,9 @@ def test_kinds_of_backlash_are_the_same_backlash(kind):
     assert_allclose(same.pinion.mean_normal_thickness, wide.pinion.mean_normal_thickness)
 
 
+ON_PAPER = replace(annex_f3(), face_width=None, cutter_radius=None)
+"""Pitch cones as of a drawing, which does not say what they were found with."""
+
 test_blank_refuses = refused_calls(
     (lambda: sample(face_width=-1.0), "face_width: -1.0 is not positive"),
     (lambda: sample(pressure_angles=(0.3, 1.0)), r"pressure_angles: \(0.3, 1.0\) rad are not between"),
@@ -151,8 +154,19 @@ test_blank_refuses = refused_calls(
     (lambda: sample(wheel_angles=(1.0, 0.0)), "wheel_angles: .* are not within"),
     (lambda: sample(backlash=-0.1), "backlash: -0.1 mm is negative"),
     (lambda: sample(taper="modified"), "taper: 'modified' is not one of duplex, standard, uniform"),
-    (lambda: sample(face_width=125.0), "face_width: 125 mm reaches below the offset", GeometryError),
-    (lambda: sample(cutter_radius=25.0), "cutter_radius 25.0 mm: its circle does not cross", GeometryError),
+    (lambda: sample(face_width=50.0), "face_width: found 50 mm; allowed 30 mm, with which the pitch cones were found"),
+    (lambda: sample(cutter_radius=60.0), r"cutter_radius: found 60 mm; allowed 63\.5 mm, with which"),
+    (lambda: sample(teeth=(11, 45)), "teeth: found 11 and 45, which do not roll on these pitch cones"),
+    (
+        lambda: sample(pitch_cones=ON_PAPER, face_width=125.0),
+        "face_width: 125 mm reaches below the offset",
+        GeometryError,
+    ),
+    (
+        lambda: sample(pitch_cones=ON_PAPER, cutter_radius=25.0),
+        "cutter_radius 25.0 mm: its circle does not cross",
+        GeometryError,
+    ),
     (lambda: sample(profile_shift=1.1), "no addendum is left|pointed", GeometryError),
     (lambda: sample(wheel_angles=deg(-3.0, 4.0)), "root angle .* are not in order", GeometryError),
 )

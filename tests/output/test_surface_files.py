@@ -5,10 +5,12 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import InputError
+from loaded_tca.gears import CylindricalGear, Rack
 from loaded_tca.output.surface_files import write_stl, write_teeth, write_vtk
-from loaded_tca.pairs import mating_teeth
+from loaded_tca.pairs import mating_teeth, rack_pair
 from loaded_tca.results.teeth import teeth_in_space
-from loaded_tca.tooth import Resolution, TriangleMesh
+from loaded_tca.tooth import Resolution, TriangleMesh, build_tooth
+from tests.samples import double_helical
 from tests.samples.results import result
 
 CORNERS = np.array([[0.0, 0.0, 0.1], [3.0, 0.0, 1.0 / 3.0], [0.0, 2.0, 0.0], [0.0, 0.0, 1e-300]])
@@ -163,3 +165,90 @@ def test_teeth_of_a_result_are_written(tmp_path, whole):
         points, triangles = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)  # in single precision
         edges = np.sort(np.concatenate([triangles.reshape(-1, 3)[:, [k, (k + 1) % 3]] for k in range(3)]), axis=1)
         assert (np.unique(edges @ [len(points), 1], return_counts=True)[1] == 2).all(), f"{name}: open"
+
+
+COARSE = Resolution(9, 5, 3, 5)
+
+
+def lead_and_ends(points):
+    """By how much a tooth turns along its face, d theta/dz [rad/mm], and the ends of the face [mm]."""
+    points = np.unique(points, axis=0)
+    low, high = points[:, 2].min(), points[:, 2].max()
+    turned = [
+        np.arctan2(points[at, 1], points[at, 0]).mean()
+        for at in (np.isclose(points[:, 2], end, atol=1e-4) for end in (low, high))
+    ]
+    return (turned[1] - turned[0]) / (high - low), (low, high)
+
+
+def test_halves_of_a_double_helical_pair_have_their_hands_and_their_places_on_the_gears(tmp_path):
+    """Half a at z from 10 to 50 mm, the pinion right-hand; half b left-hand on the other side of the groove."""
+    for half, (cycle, sign) in enumerate(zip(double_helical.analysed()[0].halves, (1.0, -1.0), strict=True)):
+        teeth = mating_teeth(cycle.gear_pair, COARSE)
+        directory = tmp_path / str(half)
+        write_teeth(teeth_in_space(cycle, teeth), teeth, directory)
+        helix = np.tan(np.radians(15.0)) / (0.5 * 4.0 / np.cos(np.radians(15.0)))  # tan(beta)/r times z
+        for name, hand, count in (("pinion", 1.0, 29), ("wheel", -1.0, 87)):
+            content = (directory / f"{name}.stl").read_bytes()[84:]
+            triangles = np.frombuffer(content, STL_TRIANGLE)
+            corners = triangles["corners"].astype(float)
+            lead, ends = lead_and_ends(corners.reshape(-1, 3))
+            # modifications of a few um over 40 mm, on one side of two, over the radius of the pinion
+            assert_allclose(lead, sign * hand * helix / count, rtol=2e-3)
+            assert_allclose(sorted(np.abs(ends)), [10.0, 50.0], atol=1e-4)  # in single precision
+            assert np.sign(ends[0]) == sign
+            outward = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+            assert np.einsum("ij,ij->", corners.mean(axis=1), outward) > 0.0  # volume, by the theorem of Gauss
+        points, _, _ = Reader(directory / "pinion.vtk").read()
+        assert_allclose(sorted(np.abs([points[:, 2].min(), points[:, 2].max()])), [10.0, 50.0])
+        assert (np.sign(points[:, 2]) == sign).all()
+
+
+def test_rack_is_drawn_from_its_reference_line(tmp_path):
+    """A tooth of a module of 3 mm: tip line at 3 mm, root at -3.75 mm, flanks as planes of 20 deg, all of it sound."""
+    pinion = CylindricalGear(teeth=20, normal_module=3.0, face_width=20.0)
+    rack = Rack(normal_module=3.0, face_width=20.0, height=20.0, length=100.0)
+    tooth = build_tooth(rack_pair(pinion, rack).wheel.flanks, rack_pair(pinion, rack).wheel.form, COARSE)
+    write_stl(tmp_path / "rack.stl", tooth.solid())
+    triangles = np.frombuffer((tmp_path / "rack.stl").read_bytes()[84:], STL_TRIANGLE)
+    corners = triangles["corners"].astype(float)
+    outward = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    areas = np.linalg.norm(outward, axis=1)
+    assert areas.min() > 0.1  # twice the area; without any it would be rounding, 1e-6
+    assert_allclose(outward / areas[:, None], triangles["normal"], atol=1e-3)  # of the smallest, in single precision
+    assert_allclose(corners[..., 0].max(), 3.0, atol=1e-5)  # the tip line of the gear for the rack bends by s^2/(2 r)
+    places = corners.reshape(-1, 3)
+    at_root = places[np.abs(places[:, 0] + 3.75) < 1e-4]
+    assert_allclose([at_root[:, 1].min(), at_root[:, 1].max()], [-1.5 * np.pi, 1.5 * np.pi], atol=1e-4)
+    on_flanks = places[np.abs(places[:, 0]) < 2.9]
+    expected = 0.75 * np.pi - on_flanks[:, 0] * np.tan(np.radians(20.0))
+    straight = np.abs(on_flanks[:, 0]) < 2.5
+    assert_allclose(np.abs(on_flanks[straight, 1]), expected[straight], atol=1e-4)
+
+
+def test_whole_rack_is_straight_and_has_the_teeth_of_its_length():
+    """100 mm of a pitch of 3 pi mm hold ten whole teeth, all with their tips on one line."""
+    pinion = CylindricalGear(teeth=20, normal_module=3.0, face_width=20.0)
+    rack = {"normal_module": 3.0, "face_width": 20.0, "height": 20.0}
+    wheel = rack_pair(pinion, Rack(**rack, length=100.0)).wheel
+    solid = build_tooth(wheel.flanks, wheel.form, COARSE).solid(whole_gear=True)
+    assert solid.is_closed
+    assert_allclose(np.ptp(solid.vertices[:, 1]), 10 * 3.0 * np.pi, atol=1e-4)
+    tips = solid.vertices[solid.vertices[:, 0] > 3.0 - 1e-4]
+    assert len(np.unique((tips[:, 1] // (3.0 * np.pi) + 0.5).round(3))) >= 10
+    one = build_tooth(wheel.flanks, wheel.form, COARSE).solid()
+    assert_allclose(solid.volume, 10 * one.volume, rtol=1e-5)  # seams of the gear for the rack: 1e-6 modules
+    endless = rack_pair(pinion, Rack(**rack)).wheel
+    with pytest.raises(InputError, match=r"whole gears: found a rack of no given length; give wheel\.length_mm"):
+        build_tooth(endless.flanks, endless.form, COARSE).solid(whole_gear=True)
+
+
+def test_surface_too_far_away_for_single_precision_is_refused(tmp_path):
+    """At 4e6 mm coordinates have steps of 0.25 mm, as a rack has about the axis of the gear that stands for it."""
+    far = TriangleMesh(CORNERS + np.array([4e6, 0.0, 0.0]), FACES)
+    with pytest.raises(
+        InputError, match="vertices: the surface of 3 mm lies 4000000 mm from the origin; allowed up to"
+    ):
+        write_stl(tmp_path / "far.stl", far)
+    write_vtk(tmp_path / "far.vtk", far)  # in double precision
+    assert [path.name for path in tmp_path.iterdir()] == ["far.vtk"]

@@ -1,5 +1,6 @@
 """Teeth of both gears in mesh at the pitch point: they touch there, overlap nowhere, and have their numbers."""
 
+import itertools
 import math
 from functools import cache
 from pathlib import Path
@@ -145,3 +146,19 @@ def test_clearances_are_written_where_the_path_of_contact_is_not(path, sense):
         extent = text.get_window_extent().transformed(axes.transData.inverted())
         (end,) = ends[np.sign(ends[:, 1]) == np.sign(extent.y0 + extent.y1)]
         assert end[0] * (extent.x0 + extent.x1) < 0.0
+
+
+def test_rack_is_called_rack_and_letters_do_not_overlap():
+    """The tip line of a rack cuts the line of action near T1 where 18 teeth are just not undercut."""
+    changes = {"pair.helix_angle_deg": 0.0, "pinion.teeth": 18, "pinion.modifications": {}}
+    scene = read_scene(SCENES / "rack_and_pinion.toml").with_changes(changes)
+    figure = plot_teeth_in_mesh(scene)
+    figure.canvas.draw()
+    (axes,) = figure.axes
+    letters = [text for text in axes.texts if set(text.get_text()) <= set("ABCDET1 ")]  # T2 is far away
+    assert "".join(text.get_text().replace(" ", "") for text in letters) == "T1ABCDE"
+    boxes = sorted((text.get_window_extent() for text in letters), key=lambda box: box.x0)
+    assert all(left.x1 <= right.x0 for left, right in itertools.pairwise(boxes))
+    words = [*axes.get_legend_handles_labels()[1], axes.get_ylabel(), note_of(figure)]
+    assert "rack" in words
+    assert not [text for text in words if "wheel" in text]

@@ -2,6 +2,7 @@
 
 import copy
 import itertools
+import math
 import tomllib
 from dataclasses import fields, replace
 from pathlib import Path
@@ -519,6 +520,33 @@ def test_teeth_that_would_jam_are_warned_of(scene):
     assert "thicker than the tooth spaces" in note
     assert note in describe_scene(tight)
     assert scene.interferences() == []
+
+
+def test_teeth_that_are_thin_beside_their_spaces_are_warned_of(scene):
+    """A millimetre between the blades is as much backlash, a third of a module."""
+    thin = scene.with_changes({"pinion.cutter.convex.point_radius_mm": 90.85})
+    (note,) = thin.missing_shifts()
+    assert note.startswith("wide backlash: at the mean point the normal pitch is 1.0")
+    assert ", 0.36 mean normal modules, larger than the teeth of pinion and wheel together" in note
+    assert note in describe_scene(thin)
+    assert not scene.missing_shifts()
+
+
+def test_tips_of_blades_that_are_rounded_over_more_than_their_slot_are_refused(scene):
+    """A rounding of radius r touches the bottom of the slot r tan(45 deg - alpha/2) beside the sharp tip."""
+    blades = scene.pinion.cutter.concave, scene.pinion.cutter.convex
+    beside = sum(math.tan(math.radians(45.0 - 0.5 * blade.blade_angle_deg)) for blade in blades)
+    largest = (blades[0].point_radius_mm - blades[1].point_radius_mm) / beside
+
+    def rounded(radius):
+        names = (f"pinion.cutter.{flank}.edge_radius_mm" for flank in ("concave", "convex"))
+        return scene.with_changes(dict.fromkeys(names, radius))
+
+    assert rounded(0.999 * largest).pinion.cutter.convex.edge_radius_mm == 0.999 * largest
+    with pytest.raises(
+        InputError, match=r"^pinion\.cutter\.concave\.edge_radius_mm: found .* the rounded tips of both"
+    ):
+        rounded(1.001 * largest)
 
 
 @pytest.mark.thorough

@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import InputError
+from loaded_tca.gears import pitch_cones_by_method_1
 from loaded_tca.scene import hypoid_table, parse_scene, read_scene, scene_from_table
 from loaded_tca.unloaded import trace_contact
 from tests.refusals import refusals
@@ -113,12 +114,20 @@ def test_text_of_a_scene_makes_the_same_scene(scene):
     assert "offset_mm = 15.0" in scene.to_toml()
 
 
+def test_table_has_the_axes_that_the_pitch_cones_were_asked_for():
+    """Not 89.99999999999999 deg and 25.000000000000004 mm."""
+    cones = pitch_cones_by_method_1((11, 45), 25.0, 205.0, 31.0, math.radians(48.0), 76.2).cones
+    pair = hypoid_table(hypoid_gears(), cones)["pair"]
+    assert (pair["shaft_angle_deg"], pair["offset_mm"]) == (90.0, 25.0)
+
+
 def test_rows_tell_the_cones_on_their_axes(scene):
     rows = {label: cells for label, *cells in scene.geometry_rows()}
     assert rows["hypoid offset a [mm]"] == ["15.0000"]
     assert rows["offset angles zeta_m, zeta_mp [deg]"] == ["10.6031", "11.3896"]  # F.3: 10.603, 11.390
     assert_allclose([float(cell) for cell in rows["crossing point to P, t_zm [mm]"]], [69.727, 26.621], atol=1.5e-3)
     assert rows["pinion less wheel: spiral - zeta_mp, pressure"] == ["0.0000", "0.0000"]
+    assert_allclose(float(rows["mean normal module m_mn, of the wheel [mm]"][0]), 2.640, atol=1.5e-3)  # F.3
     assert not scene.interferences()
 
 

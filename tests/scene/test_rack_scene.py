@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from math import atan, cos, degrees, pi, radians, sin, sqrt, tan
 from pathlib import Path
@@ -13,6 +14,8 @@ import pytest
 from loaded_tca import MeshCycle, Scene, analyse, analyse_revolution, parse_scene, read_scene
 from loaded_tca.errors import AccuracyWarning, InputError, NotAskedError
 from loaded_tca.scene import CylindricalScene
+from loaded_tca.scene.key_reference import scene_reference
+from validation.cylindrical.undercut import rolled_form_radius
 
 ROUNDING = 1e-12  # of a few products
 EXAMPLE = read_scene(Path(__file__).parents[2] / "examples" / "scenes" / "rack_and_pinion.toml")
@@ -176,6 +179,11 @@ def test_reliefs_of_the_rack_start_below_its_tip_line() -> None:
         ),
         ("wheel.teeth", "Rack", 'wheel.teeth: found "Rack"; allowed "rack"'),
         ("wheel.height_mm", None, "wheel.height_mm: missing"),
+        (
+            "rating",
+            RATING | {"tolerance_class": 6},
+            "rating.tolerance_class: found 6; not allowed with a rack, of which",
+        ),
     ],
 )
 def test_what_a_rack_does_not_have_is_refused_by_its_key(key: str, value: Any, message: str) -> None:
@@ -230,6 +238,28 @@ def test_root_factors_of_wheels_come_to_those_of_the_rack() -> None:
     coarse, fine = (np.array(nominal.with_changes(with_wheel(z)).root_factors[1]) for z in (4000, 8000))
     # the critical section of the gear that stands for the rack is rounded by 3e-5 modules, 1e-11 of its diameter
     assert nominal.root_factors[1] == pytest.approx(2.0 * fine - coarse, abs=1e-4)
+
+
+def test_undercut_of_a_pinion_on_a_rack_is_warned_of_with_its_size():
+    """The basic rack cuts below z = 2/sin^2(20 deg) = 17.1 teeth; a whole involute would be used down to its base."""
+    few = SPUR.with_changes({"pinion.teeth": 14})
+    (sentence,) = few.interferences()
+    base, tip, form = 21.0 * cos(radians(20.0)), 24.0, 3.0 * rolled_form_radius(14)
+    whole = sqrt(tip**2 - base**2)
+    expected = (whole - sqrt(form**2 - base**2)) / (3.0 * pi * cos(radians(20.0)))
+    assert sentence.startswith("undercut: the trochoid of the fillet ends the flank of the pinion at diameter")
+    assert "the tip of the rack would use" in sentence
+    ratio, of_whole = map(float, re.findall(r"contact ratio is ([\d.]+) instead of ([\d.]+)", sentence)[0])
+    assert of_whole == pytest.approx(whole / (3.0 * pi * cos(radians(20.0))), abs=1e-4)  # as printed
+    assert ratio == pytest.approx(expected, abs=5e-4)  # the rolled rack has points 5e-4 of its rounding apart
+    assert SPUR.with_changes({"pinion.teeth": 18}).interferences() == []
+
+
+def test_reference_of_keys_has_none_that_a_rack_refuses():
+    (rack,) = [each for each in scene_reference() if each.path == "wheel" and "the rack" in each.about]
+    names = {row.name for row in rack.rows}
+    assert not names & {"bore_diameter_mm", "tooth", "profile_shift"}
+    assert {"height_mm", "length_mm", "teeth", "face_width_mm"} <= names
 
 
 def test_written_rack_has_no_line_on_keys_that_it_refuses():

@@ -34,6 +34,13 @@ def test_surface_with_a_fault_is_not_closed(faces):
     assert not TriangleMesh(CORNERS, faces).is_closed
 
 
+def test_mirrored_mesh_keeps_its_outside_and_its_volume():
+    mirrored = TETRAHEDRON.moved(np.array([0.0, 0.0, 2.0]), np.diag([1.0, 1.0, -1.0]))
+    assert_allclose(mirrored.volume, 1.0)
+    assert mirrored.is_closed
+    assert_allclose(mirrored.vertices[3], [0.0, 0.0, 1.0])
+
+
 def test_seams_are_borders_and_changes():
     corners = np.array([[x, y, 0.0] for x in range(3) for y in range(2)], dtype=float)
     faces = grid_triangles(np.arange(6).reshape(3, 2))
