@@ -12,7 +12,7 @@ from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import named
 from loaded_tca.rating.lives import FLANK, LOCAL_FLANK, LOCAL_ROOT, MODES, ROOT, Endurance, Endurances
 from loaded_tca.rating.loads import load_factors
-from loaded_tca.rating.roots import local_root_factors, root_of, under_loads_of_both_flanks
+from loaded_tca.rating.roots import local_root_factors, pressed_by_others, root_of, under_loads_of_both_flanks
 from loaded_tca.rating.solved import OF_FLANK, OF_ROOT
 from loaded_tca.rating.vibration import vibration
 from loaded_tca.reference import iso6336, iso6336_1, iso6336_2, iso6336_3
@@ -231,16 +231,9 @@ def _local_root(inputs: CommonInputs, loads: Arrays, place: int) -> tuple[Arrays
     assert solved.root_places is not None
     assert solved.largest_root_places is not None
     every, ratios = np.arange(len(inputs.torque)), solved.root_stress_ratio[:, place]
-    tensions = np.stack([solved.root_tension[:, place], solved.largest_root_tension[:, place]])
-    by_others = inputs.cases.press_on_back > 0.0
-    if by_others.any():
-        uses = [
-            tension / local_root_factors(inputs, place, ratio, every)[1].strength
-            for tension, ratio in zip(tensions, (ratios, np.zeros(len(every))), strict=True)
-        ]
-        by_others &= uses[1] >= uses[0]
+    by_others = pressed_by_others(inputs, place)
     ratio, factors, notes = local_root_factors(inputs, place, np.where(by_others, 0.0, ratios), every)
-    tension = np.where(by_others, tensions[1], tensions[0])
+    tension = np.where(by_others, solved.largest_root_tension[:, place], solved.root_tension[:, place])
     tension = np.where(inputs.torque > 0.0, tension, 0.0) * loads["K_A"] * loads["K_gamma"] * loads["K_v"]
     angle, axial = np.where(by_others, solved.largest_root_places[..., place], solved.root_places[..., place])
     return (
