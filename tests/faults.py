@@ -2448,7 +2448,8 @@ FAULTS = (
         "rating/places.py",
         "stress_ratio(largest, smallest) + change, case)",
         "stress_ratio(largest, smallest) + change, torque)",
-        "rating/test_spectrum.py::test_places_are_those_of_bins_that_load_the_analysed_flanks",
+        "rating/test_spectrum.py::"
+        "test_maps_between_analysed_torques_are_those_of_the_nearest_with_interpolated_stresses",
     ),
     Fault(
         "ratings: pictures of an older rating stay beside a new one that has none of them",
@@ -4088,6 +4089,13 @@ FAULTS = (
         "    cases, shown = rating.inputs.cases, rating.torque > 0.0\n",
         "    cases, shown = rating.inputs.cases, np.isin(rating.torque, rating.inputs.solved.torque)\n",
         "rating/test_spectrum.py::test_maps_are_those_of_the_worst_bin_though_its_torque_was_not_analysed",
+    ),
+    Fault(
+        "rating: what is critical is said by safeties alone, though those of flanks go with the root of the torque",
+        "rating/findings.py",
+        "part ** (1.0 / rating.endurances[mode][0].power)",
+        "part",
+        "rating/test_places.py::test_what_decides_is_compared_on_the_scale_of_the_torque",
     ),
 )
 

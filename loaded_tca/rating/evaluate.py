@@ -135,6 +135,8 @@ def of_flanks(inputs: CommonInputs, factors: iso6336_2.FlankFactors, stress: Arr
         "Z_W_reference": np.broadcast_to(np.reshape(factors.Z_W, (2, -1)), (2, len(inputs.torque))),
         "Z_W_static": factors.Z_W_static,
         "Z_X": factors.Z_X,
+        "sigma_HG_static": factors.static_strength,
+        "sigma_HG_reference": factors.reference_strength,
         "sigma_HG": factors.strength,
     }
     whole = {name: both(inputs, values) for name, values in arrays.items()}
@@ -201,8 +203,9 @@ def of_root(inputs: CommonInputs, loads: Arrays, place: int, stress: Array) -> O
         for name, value in {
             "sigma_F": stress, "sigma_F_lim": made_of.limit_stress, "Y_ST": factors.Y_ST, "Y_NT": factors.Y_NT,
             "Y_delta_relT": factors.Y_delta_relT, "Y_delta_relT_static": factors.Y_delta_relT_static,
-            "Y_R_relT": factors.Y_R_relT, "Y_X": factors.Y_X, "Y_M": factors.Y_M, "sigma_FG": factors.strength,
-            "root_safety": _safety(factors.strength, stress),
+            "Y_R_relT": factors.Y_R_relT, "Y_X": factors.Y_X, "Y_M": factors.Y_M, "Y_M_static": factors.Y_M_static,
+            "sigma_FG_static": factors.static_strength, "sigma_FG_reference": factors.reference_strength,
+            "sigma_FG": factors.strength, "root_safety": _safety(factors.strength, stress),
         }.items()
     }  # fmt: skip
     endurances = {ROOT: _endurance_of_root(inputs, place, factors, stress)}
@@ -243,6 +246,7 @@ def _local_root(inputs: CommonInputs, loads: Arrays, place: int) -> tuple[Arrays
             "local_root_axial": axial,
             "local_stress_ratio": ratio,
             "local_Y_M": factors.Y_M,
+            "local_Y_M_static": factors.Y_M_static,
             "local_sigma_FG": factors.strength,
             "local_root_safety": _safety(factors.strength, tension),
         },

@@ -412,6 +412,16 @@ def test_roots_under_reversed_bins_have_the_largest_tension():
     assert_array_equal(rated.local_stress_ratio[1], -1.2)
 
 
+@pytest.mark.parametrize(("beside", "failure"), [(0.99, "tooth breakage"), (1.01, "pitting")])
+def test_what_decides_of_all_bins_is_compared_on_the_scale_of_the_torque(beside, failure):
+    cases = bins((100.0, 30.0), (200.0, 10.0))
+    of_flank, of_root, *_ = under(cases).spectrum_safety.min(axis=0)
+    wanted = {"rating.required_flank_safety": 2.0 * of_flank, "rating.required_root_safety": 4.0 * of_root / beside}
+    sentence = findings(under(cases, **wanted))[0]
+    assert f"the critical failure is {failure} of" in sentence
+    assert f"= {min(0.25, 0.2475 if beside < 1.0 else 0.25)}" in sentence
+
+
 def test_sentences_and_report_say_which_bin_does_the_damage(monkeypatch):
     monkeypatch.setattr("loaded_tca.reports.rating_page.rating_figures", lambda _: {})  # seconds, and tested elsewhere
     cases = bins((100.0, 30.0), (200.0, 10.0))
