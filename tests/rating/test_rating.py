@@ -245,6 +245,7 @@ def test_edge_pressure_that_local_safeties_leave_out_is_told(error, words):
     assert told == [*rated.warnings]
     (sentence,) = told
     assert "local safeties of flanks leave edges out, whose pressure is 4312 MPa under 100 N m" in sentence
+    assert "on pairs that carry 0.1% of the torque or more" in sentence
     assert words in sentence
     assert_array_equal(rated.local_flank_safety, plain.local_flank_safety)
     lower = 0.9 * np.nan_to_num(solved().peak_pressure).max(axis=(1, 2)).min()
