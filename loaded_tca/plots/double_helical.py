@@ -200,7 +200,7 @@ DOUBLE_HELICAL_PICTURES: dict[str, Picture[DoubleHelicalResult]] = {
         lambda result: result.dataset.sizes["position"] > 1,
     ),
     **{
-        f"half_{name}_pressure_envelope": Picture(
+        f"half_envelope_{name}": Picture(
             f"highest pressure on both flanks of half {name} over the cycle, under its share of the largest torque",
             f"Contact pattern of half {name} under load: the highest pressure that each place of its flanks sees.",
             partial(plot_half_envelope, half=half),

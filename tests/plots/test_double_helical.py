@@ -47,7 +47,7 @@ def test_load_over_both_halves_is_the_normal_force_of_the_shares(result):
 def test_pattern_of_a_half_has_its_highest_pressure(half, result):
     """Cells have the pressure of the maps of that half, under the torque nearest to its mean share."""
     name, cycle = "ab"[half], result.halves[half]
-    figure = DOUBLE_HELICAL_PICTURES[f"half_{name}_pressure_envelope"](result)
+    figure = DOUBLE_HELICAL_PICTURES[f"half_envelope_{name}"](result)
     share = result.torque_share[-1, :, half].mean() * result.torque[-1]
     nearest = int(np.abs(cycle.torque - share).argmin())
     highest = max(one.pressure.max() for row in cycle.maps[nearest] for one in row if one is not None)
@@ -59,7 +59,7 @@ def test_pattern_of_a_half_has_its_highest_pressure(half, result):
     shares = result.dataset.torque_share.copy()
     shares[..., half] = 0.0
     idle = replace(result, dataset=result.dataset.assign(torque_share=shares))
-    assert not DOUBLE_HELICAL_PICTURES[f"half_{name}_pressure_envelope"].has(idle)
+    assert not DOUBLE_HELICAL_PICTURES[f"half_envelope_{name}"].has(idle)
     with pytest.raises(InputError, match="half: 2 is no index from 0 to 1"):
         plot_half_envelope(result, 2)
 
