@@ -486,8 +486,8 @@ PITCH_VELOCITY = Kind(
     "give `friction` as a number from a test",
 )
 EDGES_NOT_RATED = Kind(
-    "rating: local safeties of flanks leave edges out, whose pressure is {pressure:.0f} MPa under {torque} beside a "
-    "peak pressure of {peak:.0f} MPa, {accuracy}",
+    "rating: local safeties of flanks leave edges out, whose pressure is {pressure:.0f} MPa under {torque}, on pairs "
+    "that carry 0.1% of the torque or more, beside a peak pressure of {peak:.0f} MPa, {accuracy}",
     "local safeties follow from slices of the flanks away from edges, as `peak_pressure` does. A sharp edge has no "
     "finite pressure, and allowable stresses are not those of edges. The pitting that an edge adds is not rated",
     "tip or end relief that takes the load from the edge, as the finding of the summary says. A radius makes "

@@ -250,26 +250,26 @@ class CylinderFrame(FlankFrame):
 @checked
 @dataclass(frozen=True)
 class ConeFrame(FlankFrame):
-    """Cone distance from the middle of the face, against the height R (u - delta) above the pitch cone.
+    """Cone distance R - R_m from the mean one, against the height R (u - delta) above the pitch cone.
 
     Parameters
     ----------
     pitch_angle : float [rad]
         delta.
     mean_cone_distance : float [mm]
-        R_m, in the middle of the face.
+        R_m.
 
     Examples
     --------
     >>> frame = ConeFrame(math.radians(45), 100.0)
     >>> frame.place(100.0 * math.sin(0.8), 100.0 * math.cos(0.8))
-    'in the middle of the face, 1.46 mm above the pitch cone'
+    'at the mean cone distance, 1.46 mm above the pitch cone'
     """
 
     pitch_angle: float
     mean_cone_distance: float
 
-    labels = ("cone distance from mid-face [mm], toe left, heel right", "height above the pitch cone [mm]")
+    labels = ("cone distance R - R_m [mm], toe left, heel right", "height above the pitch cone [mm]")
     heelwards = "the heel"
     edges = ("face cone", "root form cone", "toe", "heel")
 
@@ -284,12 +284,12 @@ class ConeFrame(FlankFrame):
         return "cone angle " + " to ".join(f"{angle:.2f}" for angle in angles) + " deg"
 
     def place(self, rho: float, z: float) -> str:
-        """Cone distance from the middle and height."""
+        """Cone distance from the mean one and height."""
         lengthwise, height = (float(part) for part in self.to_picture(np.array(rho), np.array(z)))
         side = "above" if height >= 0.0 else "below"
         end = "heel" if lengthwise >= 0.0 else "toe"
         along = _rounded(abs(lengthwise))
-        where = "in the middle of the face" if along == "0" else f"{along} mm from mid-face to the {end}"
+        where = "at the mean cone distance" if along == "0" else f"{along} mm from R_m to the {end}"
         return f"{where}, {_rounded(abs(height))} mm {side} the pitch cone"
 
 

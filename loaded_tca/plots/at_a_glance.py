@@ -138,7 +138,7 @@ def _write_numbers(axes: Axes, result: MeshCycle, torque: int) -> None:
     figures = key_figures(result, torque)
     names = [name for name in SHOWN if math.isfinite(figures.get(name, math.nan))]
     axes.set_axis_off()
-    marked = {"edge_pressure_MPa": ", mesh-dependent where sharp"}
+    marked = {"edge_pressure_MPa": ", of any pair, mesh-dependent where sharp"}
     rows = [[label_of(name) + marked.get(name, ""), shown(figures[name], name)] for name in names]
     table = axes.table(rows, loc="upper left", cellLoc="left", colWidths=[0.82, 0.18], edges="horizontal")
     for row in range(len(rows)):

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from loaded_tca.arrays import index_checks
 from loaded_tca.double_helical import DoubleHelicalResult, DoubleHelicalRevolution
+from loaded_tca.errors import require
 from loaded_tca.plain import plain
 from loaded_tca.plots import style
 from loaded_tca.plots.picture import Picture, captions_of, figures_of
+from loaded_tca.plots.pressure_map import envelopes_of
 from loaded_tca.plots.revolution import REVOLUTION_PICTURES
 from loaded_tca.results.summary import shown_torque
 from loaded_tca.scene.double_helical import HALVES, SIGNS
@@ -111,6 +115,44 @@ def plot_halves_error(result: DoubleHelicalResult) -> Figure:
     )
 
 
+def plot_half_envelope(result: DoubleHelicalResult, half: int, torque: int | None = None) -> Figure:
+    """Highest pressure that each place of both flanks of a half sees over the cycle, the contact pattern under load.
+
+    Under the analysed torque of the half that is nearest to its mean share, where the floating gear stands.
+
+    Parameters
+    ----------
+    result : DoubleHelicalResult
+    half : int
+        0 for half a, 1 for half b.
+    torque : int, optional
+        Index of the torque of both halves; default: the largest.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If there is no such half or torque.
+    """
+    require(*index_checks(half=(half, len(HALVES))))
+    torque = style.torque_or_largest(result.torque, torque)
+    cycle = result.halves_by_place[result.place_of_torque[torque]][half]
+    share = float(result.torque_share[torque].mean(axis=0)[half])
+    nearest = int(np.abs(cycle.torque - share * result.torque[torque]).argmin())
+    figure, _ = envelopes_of(cycle, [nearest])
+    whole, carried = (shown_torque(part * float(result.torque[torque])) for part in (1.0, share))
+    style.write_title(
+        figure,
+        result.scene.title,
+        f"pressure envelope of half {HALVES[half]} under {shown_torque(cycle.torque[nearest])}",
+        f"analysed torque of the half nearest to its mean share, {carried} of {whole}",
+    )
+    return figure
+
+
 def plot_halves_shares(result: DoubleHelicalResult, torque: int | None = None) -> Figure:
     """Shares of both halves in the torque over a pitch.
 
@@ -145,6 +187,11 @@ def _floats(result: DoubleHelicalResult | DoubleHelicalRevolution) -> bool:
     return result.scene.geometry.floating != "none"
 
 
+def _carries(result: DoubleHelicalResult, half: int) -> bool:
+    """Whether a half carries a part of the largest torque."""
+    return bool(result.torque_share[style.torque_or_largest(result.torque, None)][:, half].max() > 0.0)
+
+
 DOUBLE_HELICAL_PICTURES: dict[str, Picture[DoubleHelicalResult]] = {
     "halves_face_load": Picture(
         "load over both halves beside each other, under the largest torque; of two positions or more",
@@ -152,6 +199,15 @@ DOUBLE_HELICAL_PICTURES: dict[str, Picture[DoubleHelicalResult]] = {
         plot_halves_face_load,
         lambda result: result.dataset.sizes["position"] > 1,
     ),
+    **{
+        f"half_envelope_{name}": Picture(
+            f"highest pressure on both flanks of half {name} over the cycle, under its share of the largest torque",
+            f"Contact pattern of half {name} under load: the highest pressure that each place of its flanks sees.",
+            partial(plot_half_envelope, half=half),
+            partial(_carries, half=half),
+        )
+        for half, name in enumerate(HALVES)
+    },
     "halves_shares": Picture(
         "shares of both halves over the pitch, under the largest torque",
         "Equal shares if a gear floats freely; if both gears are held, the half with the smaller gap carries more.",

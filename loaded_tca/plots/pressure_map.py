@@ -326,7 +326,7 @@ def plot_pressure_envelope(result: MeshCycle, torque: int | None = None) -> Figu
         If the result has no such torque.
     """
     torque = chosen_torque(result, torque)
-    figure, _ = _envelopes(result, [torque])
+    figure, _ = envelopes_of(result, [torque])
     style.set_title(figure, result, f"pressure envelope, {load(result, torque)}", range_of_positions(result))
     return figure
 
@@ -346,7 +346,7 @@ def plot_contact_patterns(result: MeshCycle) -> Figure:
     matplotlib.figure.Figure
     """
     shown = style.torques_with_panels(result)
-    figure, panels = _envelopes(result, shown)
+    figure, panels = envelopes_of(result, shown)
     for torque, axes in zip(shown, panels[::2], strict=True):
         axes.set_ylabel(f"{style.torque_label(result, torque)}\n{axes.get_ylabel()}")
     about = f"loaded contact patterns, {style.loads(result, len(shown))}"
@@ -354,7 +354,7 @@ def plot_contact_patterns(result: MeshCycle) -> Figure:
     return figure
 
 
-def _envelopes(result: MeshCycle, torques: list[int]) -> tuple[Figure, list[Axes]]:
+def envelopes_of(result: MeshCycle, torques: list[int]) -> tuple[Figure, list[Axes]]:
     """Both flanks with their pressure envelope in a row for each torque, without a title."""
     maps = [one for torque in torques for one in loaded_maps(result, torque)]
     scale, extend = colour_scale(result, maps)

@@ -25,7 +25,7 @@ from loaded_tca.plots.flanks import ToPicture, both_flanks
 from loaded_tca.plots.picture import Picture
 from loaded_tca.plots.pressure_map import FIELDS, POINTS_OF_A_FIELD
 from loaded_tca.plots.root_stress import GEAR_COLOURS
-from loaded_tca.plots.style import ACCENT, COLOURS, DISTINCT_COLOURS, load, torque_label
+from loaded_tca.plots.style import ACCENT, COLOURS, DISTINCT_COLOURS, load
 from loaded_tca.rating import Rating
 from loaded_tca.rating.lives import COAST, FLANK, LOCAL_FLANK, LOCAL_ROOT, ROOT
 from loaded_tca.rating.places import (
@@ -38,6 +38,8 @@ from loaded_tca.rating.places import (
     worst_case,
 )
 from loaded_tca.rating.spectrum import OfSpectrum
+from loaded_tca.results.summary import shown_torque
+from loaded_tca.scene.load import ROUNDED
 
 if TYPE_CHECKING:
     from loaded_tca.rating.rating import OfCases
@@ -63,12 +65,13 @@ def plot_flank_safety(rating: Rating, case: int | None = None) -> Figure:
     ----------
     rating : Rating
     case : int, optional
-        Index of the case; default: among torques that were solved that of the smallest local safety, of a load
-        spectrum the bin of the largest damage.
+        Index of the case; default: that of the smallest local safety, of a load spectrum the bin of the largest
+        damage. Between analysed torques the places are those under the nearest one.
 
     Returns
     -------
     matplotlib.figure.Figure
+        Of a load spectrum the title has the safety of all bins together, too.
 
     Raises
     ------
@@ -93,7 +96,7 @@ def plot_flank_safety(rating: Rating, case: int | None = None) -> Figure:
         figure,
         rating.result,
         f"local safety of the flanks, {_load(rating, case)}",
-        *_about(required, why),
+        *_about(rating, case, LOCAL_FLANK, why),
     )
     return figure
 
@@ -106,12 +109,13 @@ def plot_root_safety(rating: Rating, case: int | None = None) -> Figure:
     rating : Rating
         Of a result with root stress.
     case : int, optional
-        Index of the case; default: among torques that were solved that of the smallest local safety, of a load
-        spectrum the bin of the largest damage.
+        Index of the case; default: that of the smallest local safety, of a load spectrum the bin of the largest
+        damage. Between analysed torques the places are those under the nearest one.
 
     Returns
     -------
     matplotlib.figure.Figure
+        Of a load spectrum the title has the safety of all bins together, too.
 
     Raises
     ------
@@ -145,7 +149,7 @@ def plot_root_safety(rating: Rating, case: int | None = None) -> Figure:
         figure,
         rating.result,
         f"local safety of the roots, {_load(rating, case)}",
-        *_about(required, why),
+        *_about(rating, case, LOCAL_ROOT, why),
     )
     return figure
 
@@ -201,19 +205,31 @@ def _scale(safety: Array, required: float) -> tuple[Normalize, Colormap]:
 
 def _load(rating: Rating, case: int) -> str:
     """Torque of a case, with the number of its bin in a load spectrum, as notes and tables count them."""
-    torque, cases = torque_of(rating, case), rating.inputs.cases
-    if not cases.is_spectrum:
-        return load(rating.result, torque)
-    return f"{torque_label(rating.result, torque)} (bin {case + 1} of {len(cases.torque)})"
+    if not rating.inputs.cases.is_spectrum:
+        return load(rating.result, torque_of(rating, case))
+    return f"pinion torque {shown_torque(rating.torque[case])} (bin {case + 1} of {len(rating.torque)})"
 
 
-def _about(required: float, why: str) -> tuple[str, ...]:
-    """Lines on what is drawn, and why of that case."""
+def _about(rating: Rating, case: int, mode: str, why: str) -> tuple[str, ...]:
+    """Lines on what is drawn, why of that case, and what all bins of a load spectrum do together."""
+    required, torque = rating.required.required_safety(mode), float(rating.torque[case])
+    analysed = float(rating.result.torque[torque_of(rating, case)])
+    between = f"places as under {shown_torque(analysed)}, the nearest analysed torque; stresses interpolated"
     return (
-        *filter(None, [why]),
+        *filter(None, [why, _together(rating, mode)]),
+        *([] if math.isclose(torque, analysed, rel_tol=ROUNDED) else [between]),
         f"required {plain(required)}, below it orange; the smallest of all positions",
-        "cross: where it is smallest",
+        "cross: where it is smallest" + (" in this bin" if rating.inputs.cases.is_spectrum else ""),
     )
+
+
+def _together(rating: Rating, mode: str) -> str:
+    """Safety of all bins of a load spectrum together, of both gears; nothing without a spectrum."""
+    if not isinstance(rating, OfSpectrum):
+        return ""
+    safeties = rating.safeties_and_lives()[0][0, :, rating.modes.index(mode)]
+    both = " | ".join(f"{name} {plain(float(safety))}" for name, safety in zip(GEARS, safeties, strict=True))
+    return f"safety of all bins together: {both}"
 
 
 def _axial(gear: str) -> str:

@@ -47,6 +47,8 @@ CELL = (2.0, 1.35)
 """Size of a cell [inch]."""
 MARGIN = 1.6
 """Beside all cells, and above and below them [inch]."""
+LEAST_WIDTH = 5.6
+"""Of the picture, which the title of the legend fills [inch]: one column of cells is wider for this."""
 LEGEND, NAME = 0.8, 0.25
 """Heights kept for the legend and the name of the axis above it [inch]: the layout would draw one over the other."""
 LEVELS = 7
@@ -160,7 +162,7 @@ def plot_loaded_vh_check(
 
 def _grid_of_flanks(v: Array, h: Array, names: tuple[str, str]) -> tuple[Figure, NDArray[np.object_]]:
     """A panel for each pair of errors, v upwards and h to the right, with their values and names at the edges."""
-    size = MARGIN + CELL[0] * len(h), LEGEND + MARGIN + CELL[1] * len(v)
+    size = max(MARGIN + CELL[0] * len(h), LEAST_WIDTH), LEGEND + MARGIN + CELL[1] * len(v)
     legend, below = LEGEND / size[1], (LEGEND + NAME) / size[1]
     figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(rect=(0.0, below, 1.0, 1.0 - below)))
     panels = figure.subplots(len(v), len(h), squeeze=False, sharex=True, sharey=True)

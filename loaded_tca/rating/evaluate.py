@@ -12,7 +12,7 @@ from loaded_tca.arrays import GEARS, Array
 from loaded_tca.errors import named
 from loaded_tca.rating.lives import FLANK, LOCAL_FLANK, LOCAL_ROOT, MODES, ROOT, Endurance, Endurances
 from loaded_tca.rating.loads import load_factors
-from loaded_tca.rating.roots import local_root_factors, root_of, under_loads_of_both_flanks
+from loaded_tca.rating.roots import local_root_factors, pressed_by_others, root_of, under_loads_of_both_flanks
 from loaded_tca.rating.solved import OF_FLANK, OF_ROOT
 from loaded_tca.rating.vibration import vibration
 from loaded_tca.reference import iso6336, iso6336_1, iso6336_2, iso6336_3
@@ -135,6 +135,8 @@ def of_flanks(inputs: CommonInputs, factors: iso6336_2.FlankFactors, stress: Arr
         "Z_W_reference": np.broadcast_to(np.reshape(factors.Z_W, (2, -1)), (2, len(inputs.torque))),
         "Z_W_static": factors.Z_W_static,
         "Z_X": factors.Z_X,
+        "sigma_HG_static": factors.static_strength,
+        "sigma_HG_reference": factors.reference_strength,
         "sigma_HG": factors.strength,
     }
     whole = {name: both(inputs, values) for name, values in arrays.items()}
@@ -201,8 +203,9 @@ def of_root(inputs: CommonInputs, loads: Arrays, place: int, stress: Array) -> O
         for name, value in {
             "sigma_F": stress, "sigma_F_lim": made_of.limit_stress, "Y_ST": factors.Y_ST, "Y_NT": factors.Y_NT,
             "Y_delta_relT": factors.Y_delta_relT, "Y_delta_relT_static": factors.Y_delta_relT_static,
-            "Y_R_relT": factors.Y_R_relT, "Y_X": factors.Y_X, "Y_M": factors.Y_M, "sigma_FG": factors.strength,
-            "root_safety": _safety(factors.strength, stress),
+            "Y_R_relT": factors.Y_R_relT, "Y_X": factors.Y_X, "Y_M": factors.Y_M, "Y_M_static": factors.Y_M_static,
+            "sigma_FG_static": factors.static_strength, "sigma_FG_reference": factors.reference_strength,
+            "sigma_FG": factors.strength, "root_safety": _safety(factors.strength, stress),
         }.items()
     }  # fmt: skip
     endurances = {ROOT: _endurance_of_root(inputs, place, factors, stress)}
@@ -231,16 +234,9 @@ def _local_root(inputs: CommonInputs, loads: Arrays, place: int) -> tuple[Arrays
     assert solved.root_places is not None
     assert solved.largest_root_places is not None
     every, ratios = np.arange(len(inputs.torque)), solved.root_stress_ratio[:, place]
-    tensions = np.stack([solved.root_tension[:, place], solved.largest_root_tension[:, place]])
-    by_others = inputs.cases.press_on_back > 0.0
-    if by_others.any():
-        uses = [
-            tension / local_root_factors(inputs, place, ratio, every)[1].strength
-            for tension, ratio in zip(tensions, (ratios, np.zeros(len(every))), strict=True)
-        ]
-        by_others &= uses[1] >= uses[0]
+    by_others = pressed_by_others(inputs, place)
     ratio, factors, notes = local_root_factors(inputs, place, np.where(by_others, 0.0, ratios), every)
-    tension = np.where(by_others, tensions[1], tensions[0])
+    tension = np.where(by_others, solved.largest_root_tension[:, place], solved.root_tension[:, place])
     tension = np.where(inputs.torque > 0.0, tension, 0.0) * loads["K_A"] * loads["K_gamma"] * loads["K_v"]
     angle, axial = np.where(by_others, solved.largest_root_places[..., place], solved.root_places[..., place])
     return (
@@ -250,6 +246,7 @@ def _local_root(inputs: CommonInputs, loads: Arrays, place: int) -> tuple[Arrays
             "local_root_axial": axial,
             "local_stress_ratio": ratio,
             "local_Y_M": factors.Y_M,
+            "local_Y_M_static": factors.Y_M_static,
             "local_sigma_FG": factors.strength,
             "local_root_safety": _safety(factors.strength, tension),
         },

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from loaded_tca.arrays import GEARS
+from loaded_tca.arrays import GEARS, Array
 from loaded_tca.plain import apart, plain
 from loaded_tca.rating.lives import COAST, FLANK, ROOT
 
@@ -19,14 +19,36 @@ FAILURES = {FLANK: "pitting", ROOT: "tooth breakage"}
 ALL_FAILURES = {**FAILURES, COAST[FLANK]: "pitting of the coast flank"}
 
 
-class Worst(NamedTuple):
-    """The safety of a rating that is the least over that required: its kind, case and gear by index, both numbers."""
+def torque_factors(rating: OfCases, mode: str, safeties: Array) -> Array:
+    """Safeties against a kind of failure over that required, on the scale of the torque, for all kinds the same.
 
-    kind: str
+    The stress of flanks grows with the root of the torque, and that of roots with the torque: of flanks that is
+    (S_H/S_Hmin)^2, of roots S_F/S_Fmin. Load factors and lives change with the torque, too, and are held.
+    """
+    part = safeties / rating.required.required_safety(mode)
+    return np.asarray(part ** (1.0 / rating.endurances[mode][0].power))
+
+
+def _factor_in_words(mode: str, factor: float) -> str:
+    """Torque factor with its formula."""
+    formula = "(S_F/S_Fmin)" if _kind(mode) == ROOT else "(S_H/S_Hmin)^2"
+    return f"torque factor {formula} = {plain(factor)}"
+
+
+class Worst(NamedTuple):
+    """The safety of a rating with the least torque factor: its kind, case and gear by index, and all three numbers."""
+
+    mode: str
     case: int
     gear: int
     safety: float
     required: float
+    factor: float
+
+    @property
+    def kind(self) -> str:
+        """Flank or root."""
+        return _kind(self.mode)
 
     def words(self, rating: Rating) -> str:
         """Gear, failure, torque, and how far the safety is from that required."""
@@ -35,18 +57,22 @@ class Worst(NamedTuple):
         torque = rating.inputs.torque_in_words(float(rating.torque[self.case]))
         failure = f"{FAILURES[self.kind]} of the {GEARS[self.gear]} under {torque}"
         safety, _ = apart([self.safety, self.required], 4)
-        return f"{failure}: safety {safety}, {distance} the required {plain(self.required, 6)}"
+        return (
+            f"{failure}: safety {safety}, {distance} the required {plain(self.required, 6)}, "
+            f"{_factor_in_words(self.mode, self.factor)}"
+        )
 
 
 def worst_of(rating: Rating, prefix: str = "") -> Worst:
-    """The safety that is the least over that required, of the standard or, with "local_", of the local ones."""
+    """The safety with the least torque factor, of the standard or, with "local_", of the local ones."""
     every = []
     for kind in FAILURES:
-        if rating.has(name := f"{prefix}{kind}_safety") and np.isfinite(values := rating.values(name)).any():
-            case, gear = (int(place) for place in np.unravel_index(np.nanargmin(values), values.shape))
-            required = rating.required.required_safety(kind)
-            every.append(Worst(kind, case, gear, float(values[case, gear]), required))
-    return min(every, key=lambda worst: worst.safety / worst.required)
+        mode = f"{prefix}{kind}"
+        if rating.has(name := f"{mode}_safety") and np.isfinite(values := rating.values(name)).any():
+            at = case, gear = tuple(int(place) for place in np.unravel_index(np.nanargmin(values), values.shape))
+            required, factors = rating.required.required_safety(kind), torque_factors(rating, mode, values)
+            every.append(Worst(mode, case, gear, float(values[at]), required, float(factors[at])))
+    return min(every, key=lambda worst: worst.factor)
 
 
 def findings(rating: Rating) -> tuple[str, ...]:
@@ -68,19 +94,21 @@ def findings(rating: Rating) -> tuple[str, ...]:
 def of_all_bins(rating: OfCases) -> Iterator[str]:
     """What decides under a spectrum, after the standard and by local stresses, and the bin that does most of it."""
     safeties = rating.safeties_and_lives()[0][0]
-    required = np.array([rating.required.required_safety(mode) for mode in rating.modes])
+    factors = np.stack([torque_factors(rating, mode, safeties[:, n]) for n, mode in enumerate(rating.modes)], axis=-1)
     for words, local in ((f"after {rating.standard}", False), ("by local stresses", True)):
         of = [n for n, mode in enumerate(rating.modes) if mode.startswith("local_") == local]
-        part = (safeties / required)[:, of]
+        part = factors[:, of]
         if not np.isfinite(part).any():
             continue
         gear, place = (int(n) for n in np.unravel_index(np.nanargmin(part), part.shape))
         n = of[place]
         damage = rating.values("damage")[:, gear, n]
-        safety, _ = apart([float(safeties[gear, n]), float(required[n])], 4)
+        required = rating.required.required_safety(rating.modes[n])
+        safety, _ = apart([float(safeties[gear, n]), required], 4)
         sentence = (
             f"{words} the critical failure is {ALL_FAILURES[_kind(rating.modes[n])]} of the {rating.MEMBERS[gear]}: "
-            f"safety {safety} in {plain(rating.life_required, 6)} h, required {plain(required[n], 6)}"
+            f"safety {safety} in {plain(rating.life_required, 6)} h, required {plain(required, 6)}, "
+            f"{_factor_in_words(rating.modes[n], float(factors[gear, n]))}"
         )
         if np.isfinite(damage).all() and damage.sum() > 0.0:
             case = int(damage.argmax())

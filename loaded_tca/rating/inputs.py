@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from loaded_tca.arrays import GEARS, Array
+from loaded_tca.arrays import GEARS, Array, Mask
 from loaded_tca.errors import InputError
 from loaded_tca.gears import CylindricalMesh, InternalMesh
 from loaded_tca.plain import apart
@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 FEWEST = 5
 """Positions over a pitch: of fewer the largest pressure and K_Hbeta miss much of the mesh."""
+MOST_ROWS = 8
+"""Of bins that follow each other, which a sentence names one by one."""
 NEEDED = {
     "strength": "a rating needs allowable stresses: give material, or kind with its stresses",
     "rating": "this section has the required safeties and the hours",
@@ -144,6 +146,22 @@ class CommonInputs(ABC):
         name, ratio = self.duty.torque_of
         texts = apart([1e-3 * ratio * torque for torque in torques])
         return f"{', '.join(texts)} N m" + (f" at the {name}" if gear or name != "pinion" else "")
+
+    def cases_in_words(self, some: Mask) -> str:
+        """Which cases (c,) these are: bins by their numbers, where they are few, or torques."""
+        if not self.cases.is_spectrum:
+            return f"under {self.torque_in_words(*self.torque[some].tolist())}"
+        places = np.flatnonzero(some)
+        rows = np.split(1 + places, 1 + np.flatnonzero(np.diff(places) > 1))
+        if len(rows) > MOST_ROWS:
+            return f"{len(places)} of {len(some)} bins"
+        names = [f"{row[0]}" if len(row) == 1 else f"{row[0]} to {row[-1]}" for row in rows]
+        return f"bin{'' if len(places) == 1 else 's'} {', '.join(names)} of {len(some)}"
+
+    def notes_of_cases(self, notes: Sequence[str], noted: Sequence[Mask]) -> tuple[str, ...]:
+        """Notes with the cases (c,) of which each is true; those of idle bins alone are left out."""
+        concerned = [(note, some & (self.torque > 0.0)) for note, some in zip(notes, noted, strict=True)]
+        return tuple(f"{note} ({self.cases_in_words(some)})" for note, some in concerned if some.any())
 
     @property
     @abstractmethod

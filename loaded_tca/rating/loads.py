@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def load_factors(inputs: RatingInputs) -> tuple[dict[str, Array], tuple[str, ...]]:
-    """K_A, K_gamma, K_v, K_Hbeta, K_Halpha, K_Fbeta and K_Falpha (c,) by their names, and notes.
+    """K_A, K_gamma, K_v with what it follows from, K_Hbeta, K_Halpha, K_Fbeta and K_Falpha (c,), and notes.
 
     K_Hbeta of the analysis counts from 1 on; K_Halpha and K_Falpha of the analysis are held within the bounds of the
     standard.
@@ -29,14 +29,16 @@ def load_factors(inputs: RatingInputs) -> tuple[dict[str, Array], tuple[str, ...
     ones = np.ones(len(inputs.torque))
     dynamic = ones * inputs.operation.dynamic_factor
     notes: tuple[str, ...] = ()
+    parts: dict[str, Array] = {}
     if wanted.dynamic_factor == METHOD_B:
-        dynamic, notes = _dynamic_factor(inputs)
+        dynamic, parts, notes = _dynamic_factor(inputs)
     face = flank_face_load_factor(inputs)
     flank, root = _transverse_factors(inputs, dynamic * face)
     height = inputs.scene.tooth_height_over_width
     factors = {
         "K_A": ones * inputs.operation.application_factor,
         "K_gamma": ones * inputs.loads.mesh_load_factor,
+        **parts,
         "K_v": dynamic,
         "K_Hbeta": face,
         "K_Halpha": ones * flank,
@@ -88,23 +90,31 @@ def _tip_relief(inputs: RatingInputs) -> float:
     return max(designed, run_in)
 
 
-def _dynamic_factor(inputs: RatingInputs) -> tuple[Array, tuple[str, ...]]:
-    """K_v (c,) by method B, and notes."""
+def _dynamic_factor(inputs: RatingInputs) -> tuple[Array, dict[str, Array], tuple[str, ...]]:
+    """K_v (c,) by method B, what it follows from by the names of ``NUMBERS``, and notes with their cases."""
     standard, mesh = inputs.standard, inputs.mesh
     shares = iso6336.share_of_stiffness(inputs.load)
     pitch, profile = _deviations(inputs)
-    ratio = mesh.gear_ratio
+    ratio, stiffness = mesh.gear_ratio, standard.single_stiffness * shares
+    allowances, relief = (run_in(inputs, pitch), run_in(inputs, profile)), _tip_relief(inputs)
     factor = iso6336_1.dynamic_factor(
         resonance_ratio(inputs, standard_stiffness(inputs)),
         inputs.load,
-        single_stiffness=standard.single_stiffness * shares,
+        single_stiffness=stiffness,
         total_contact_ratio=mesh.total_contact_ratio,
-        pitch_deviation=pitch - run_in(inputs, pitch),
-        profile_deviation=profile - run_in(inputs, profile),
-        tip_relief=_tip_relief(inputs),
+        pitch_deviation=pitch - allowances[0],
+        profile_deviation=profile - allowances[1],
+        tip_relief=relief,
         speed_parameter=inputs.velocity * mesh.pinion.teeth / 100.0 * ratio / hypot(1.0, ratio),
     )
-    return factor.K_v, factor.notes
+    parts: dict[str, Array | float] = {
+        "specific_load": inputs.load, "single_stiffness": stiffness, "f_pb": pitch, "y_p": allowances[0],
+        "f_falpha": profile, "y_f": allowances[1], "C_a": relief, "B_p": factor.B_p, "B_f": factor.B_f,
+        "B_k": factor.B_k,
+    }  # fmt: skip
+    count = (len(inputs.torque),)
+    whole = {name: np.array(np.broadcast_to(values, count)) for name, values in parts.items()}
+    return factor.K_v, whole, inputs.notes_of_cases(factor.notes, factor.noted)
 
 
 def _transverse_factors(inputs: RatingInputs, load_factor: Array) -> tuple[Array, Array]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from loaded_tca.results.declared import Asked, Number
 from loaded_tca.results.quantities import CYCLE_NUMBERS
 from loaded_tca.scene.cylindrical import CylindricalScene
+from loaded_tca.scene.rating import METHOD_B
 
 CASE = ("case",)
 OF_GEARS = ("case", "gear")
@@ -31,6 +32,23 @@ OF_BEVEL = Asked(
     "a factor of ISO 10300, for bevel and hypoid pairs; cylindrical pairs have factors of ISO 6336",
 )
 
+OF_METHOD_B = Asked(
+    lambda scene, _: isinstance(scene, CylindricalScene) and getattr(scene.rating, "dynamic_factor", "") == METHOD_B,
+    'a part of K_v of cylindrical pairs by method B; set rating.dynamic_factor = "method B"',
+)
+_DEVIATIONS = {
+    "f_pb": "base pitch deviation f_pb",
+    "y_p": "running-in allowance y_p of f_pb",
+    "f_falpha": "profile form deviation f_falpha",
+    "y_f": "running-in allowance y_f of f_falpha",
+    "C_a": "tip relief C_a that counts for K_v",
+}
+_OF_DYNAMIC_FACTOR = {
+    "B_p": "of K_v: B_p = c' (f_pb - y_p)/w",
+    "B_f": "of K_v: B_f = c' (f_falpha - y_f)/w",
+    "B_k": "of K_v: B_k = |1 - c' C_a/w|",
+}
+
 _LOADS = {
     "K_A": "application factor K_A",
     "K_gamma": "mesh load factor K_gamma",
@@ -53,6 +71,10 @@ NUMBERS: dict[str, Number] = {
     **_numbers(CASE, "1", _LOADS),
     **_numbers(CASE, "kg/mm", {"reduced_mass": "reduced mass m_red for each mm of the face"}, OF_CYLINDRICAL),
     **_numbers(CASE, "1", _RESONANCE, OF_CYLINDRICAL),
+    **_numbers(CASE, "N/mm", {"specific_load": "w = F_t K_A K_gamma/b, at the reference circle"}, OF_METHOD_B),
+    **_numbers(CASE, "N/(mm um)", {"single_stiffness": "single stiffness c' under w"}, OF_METHOD_B),
+    **_numbers(CASE, "um", _DEVIATIONS, OF_METHOD_B),
+    **_numbers(CASE, "1", _OF_DYNAMIC_FACTOR, OF_METHOD_B),
     **_numbers(CASE, "um", _EXCITATION),
     **_numbers(CASE, "1", {"Z_H": "zone factor Z_H"}, OF_CYLINDRICAL),
     **_numbers(CASE, "1", {"Z_MB": "mid-zone factor Z_M-B", "Z_LS": "load sharing factor Z_LS"}, OF_BEVEL),
@@ -77,7 +99,15 @@ NUMBERS: dict[str, Number] = {
         },
     ),
     **_numbers(CASE, "1", {"Z_KP": "bevel gear factor Z_KP", "Z_Hyp": "hypoid factor Z_Hyp"}, OF_BEVEL),
-    **_numbers(OF_GEARS, "MPa", {"sigma_HG": "pitting strength sigma_HG"}),
+    **_numbers(
+        OF_GEARS,
+        "MPa",
+        {
+            "sigma_HG_static": "pitting strength, static",
+            "sigma_HG_reference": "pitting strength, reference",
+            "sigma_HG": "pitting strength sigma_HG at N_L",
+        },
+    ),
     **_numbers(OF_GEARS, "1", {"flank_safety": "safety against pitting S_H"}),
     **_numbers(
         OF_GEARS,
@@ -123,9 +153,18 @@ NUMBERS: dict[str, Number] = {
             "Y_R_relT": "relative surface factor Y_R_relT",
             "Y_X": "size factor Y_X",
             "Y_M": "mean stress influence factor Y_M",
+            "Y_M_static": "mean stress influence factor Y_M, static",
         },
     ),
-    **_numbers(OF_GEARS, "MPa", {"sigma_FG": "root strength sigma_FG"}),
+    **_numbers(
+        OF_GEARS,
+        "MPa",
+        {
+            "sigma_FG_static": "root strength, static",
+            "sigma_FG_reference": "root strength, reference",
+            "sigma_FG": "root strength sigma_FG at N_L",
+        },
+    ),
     **_numbers(OF_GEARS, "1", {"root_safety": "safety against tooth breakage S_F"}),
     **_numbers(CASE, "MPa", {"local_flank_stress": "local: largest contact pressure with K_A K_gamma K_v"}),
     **_numbers(
@@ -146,8 +185,16 @@ NUMBERS: dict[str, Number] = {
     **_numbers(OF_GEARS, "rad", {"local_root_angle": "local: tangent angle of this place"}, OF_ROOTS),
     **_numbers(OF_GEARS, "mm", {"local_root_axial": "local: axial coordinate of this place"}, OF_ROOTS),
     **_numbers(OF_GEARS, "1", {"local_stress_ratio": "local: smallest over largest stress R"}, OF_ROOTS),
-    **_numbers(OF_GEARS, "1", {"local_Y_M": "local: mean stress influence factor Y_M"}, OF_ROOTS),
-    **_numbers(OF_GEARS, "MPa", {"local_sigma_FG": "local: root strength sigma_FG"}, OF_ROOTS),
+    **_numbers(
+        OF_GEARS,
+        "1",
+        {
+            "local_Y_M": "local: mean stress influence factor Y_M",
+            "local_Y_M_static": "local: mean stress influence factor Y_M, static",
+        },
+        OF_ROOTS,
+    ),
+    **_numbers(OF_GEARS, "MPa", {"local_sigma_FG": "local: root strength sigma_FG at N_L"}, OF_ROOTS),
     **_numbers(OF_GEARS, "1", {"local_root_safety": "local: safety against tooth breakage"}, OF_ROOTS),
     "damage": Number(OF_MODES, "1", "damage in the required life at the required safety"),
     "life_hours": Number(OF_MODES, "h", "life at the required safety, of the load case alone", column="life_h"),
@@ -156,8 +203,15 @@ NUMBERS: dict[str, Number] = {
 UNDER_LOAD = (
     *(name for name in _LOADS if name != "K_A"),
     *_RESONANCE,
+    "specific_load",
+    "single_stiffness",
+    *_DEVIATIONS,
+    *_OF_DYNAMIC_FACTOR,
     *_EXCITATION,
-    *(f"local_{name}" for name in ("flank_radius", "flank_axial", "root_angle", "root_axial", "stress_ratio", "Y_M")),
+    *(
+        f"local_{name}"
+        for name in ("flank_radius", "flank_axial", "root_angle", "root_axial", "stress_ratio", "Y_M", "Y_M_static")
+    ),
 )
 """Numbers that nothing has without a torque: those of idle bins and idle halves are not known."""
 OF_LOADED_FLANKS = (

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Indices
+from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.errors import InputError
 from loaded_tca.reference import iso6336_3
 
@@ -53,6 +53,27 @@ def local_root_factors(
     except InputError:  # cast irons, of which the standard has no sensitivity
         note = "local Y_M: the standard has no mean stress sensitivity for this material; Y_M is taken as 1"
         return ratio, iso6336_3.root_factors(made_of, cycles=cycles, **common), (note,)
+
+
+def pressed_by_others(inputs: CommonInputs, place: int) -> Mask:
+    """In which cases (c,) loads of the other flanks press all places of a root more than the mesh does.
+
+    The place of the largest tension then decides, and not that of the smallest safety under the mesh alone.
+    """
+    loads, every = inputs.loads, np.arange(len(inputs.torque))
+    assert loads.root_tension is not None  # asked before
+    assert loads.largest_root_tension is not None
+    assert loads.root_stress_ratio is not None
+    by_others = inputs.cases.press_on_back > 0.0
+    if by_others.any():
+        tensions = loads.root_tension[:, place], loads.largest_root_tension[:, place]
+        ratios = loads.root_stress_ratio[:, place], np.zeros(len(every))
+        by_mesh, by_largest = (
+            tension / local_root_factors(inputs, place, ratio, every)[1].strength
+            for tension, ratio in zip(tensions, ratios, strict=True)
+        )
+        by_others &= by_largest >= by_mesh
+    return by_others
 
 
 def under_loads_of_both_flanks(inputs: CommonInputs, ratio: Array | float) -> Array:

@@ -90,7 +90,7 @@ class SolvedLoads:
         their solved values, logarithms over the logarithm of the torque; below the smallest torque they go on straight,
         above the largest they stay.
         """
-        nearest = self._nearest(torques)
+        nearest = self.nearest(torques)
         exact = self._of(nearest)
         if np.array_equal(exact.torque, torques):
             return exact
@@ -117,7 +117,7 @@ class SolvedLoads:
     def by_nearest(self, torques: Array) -> SolvedLoads:
         """The same under other torques (c,), each as solved under the nearest one, over the powers of the torque."""
         return SolvedLoads.joined(
-            [self._of(row[None]).at(torque[None]) for row, torque in zip(self._nearest(torques), torques, strict=True)]
+            [self._of(row[None]).at(torque[None]) for row, torque in zip(self.nearest(torques), torques, strict=True)]
         )
 
     @classmethod
@@ -137,8 +137,8 @@ class SolvedLoads:
         places = np.unique([*range(first, len(self.torque), 2), len(self.torque) - 1])
         return self._of(places)
 
-    def _nearest(self, torques: Array) -> Indices:
-        """Index of the solved torque next to each."""
+    def nearest(self, torques: Array) -> Indices:
+        """Index of the solved torque next to each: places under others are those under this one."""
         return np.abs(self.torque[:, None] - torques).argmin(axis=0)
 
     def _of(self, some: Indices) -> SolvedLoads:

@@ -206,4 +206,9 @@ def bevel_flank_factors(
     require((0.0 < hypoid_factor < inf, f"hypoid_factor: {hypoid_factor} is not positive and finite"))
     factors, times = flank_factors(pinion, wheel, **conditions), BEVEL_FACTOR * hypoid_factor
     first, second = (SNCurve(curve.cycles, times * curve.stresses, curve.static_limit) for curve in factors.curves)
-    return replace(factors, curves=(first, second), strength=times * factors.strength)
+    return replace(
+        factors,
+        curves=(first, second),
+        reference_strength=times * factors.reference_strength,
+        strength=times * factors.strength,
+    )

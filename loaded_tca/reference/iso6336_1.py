@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from loaded_tca.arguments import checked
-from loaded_tca.arrays import Array, interval_check
+from loaded_tca.arrays import Array, Mask, interval_check
 from loaded_tca.errors import require, require_positive
 from loaded_tca.plain import plain
 from loaded_tca.reference.iso6336 import FULL_LOAD, largest_transverse_load_factor
@@ -347,6 +347,8 @@ class DynamicFactor:
         C_v1 to C_v7.
     notes : (str, ...)
         What lies outside the range of the method.
+    noted : (array of bool, ...)
+        Of which loads and speeds each note is true.
     """
 
     K_v: Array
@@ -358,6 +360,7 @@ class DynamicFactor:
     B_k: Array
     C_v: tuple[float, ...]
     notes: tuple[str, ...]
+    noted: tuple[Mask, ...]
 
 
 @checked
@@ -472,12 +475,13 @@ def dynamic_factor(
     factor = np.maximum(1.0, np.choose(place, np.broadcast_arrays(place, below, resonance, between, above)[1:]))
     notes = _dynamic_notes(place, speed, load)
     return DynamicFactor(
-        np.asarray(factor), ratio, np.asarray(edge), np.asarray(place), b_p, b_f, b_k, constants, notes
-    )
+        np.asarray(factor), ratio, np.asarray(edge), np.asarray(place), b_p, b_f, b_k, constants, (*notes,),
+        (*notes.values(),),
+    )  # fmt: skip
 
 
-def _dynamic_notes(place: Array, speed: Array, load: Array) -> tuple[str, ...]:
-    """What method B does not cover."""
+def _dynamic_notes(place: Array, speed: Array, load: Array) -> dict[str, Mask]:
+    """What method B does not cover, and for which loads and speeds."""
     cases = (
         (place == 1, "K_v: N lies in the main resonance, which the standard says to avoid or to analyse by method A"),
         (place == 2, "K_v: N lies between main resonance and supercritical range; a line between both is rough"),
@@ -490,7 +494,7 @@ def _dynamic_notes(place: Array, speed: Array, load: Array) -> tuple[str, ...]:
             f"K_v: the load is below {plain(FULL_LOAD, 6)} N/mm, where c' falls with (w/{plain(FULL_LOAD, 6)})^0.25",
         ),
     )
-    return tuple(words for holds, words in cases if bool(np.any(holds)))
+    return {words: np.broadcast_to(holds, place.shape) for holds, words in cases if bool(np.any(holds))}
 
 
 @checked

@@ -366,6 +366,8 @@ class FlankFactors:
     curves : (SNCurve, SNCurve)
         Strength of pinion and wheel over load cycles [MPa]: the reference strength has all factors, the static one
         Z_NT and Z_W alone, with a line in logarithms in between.
+    reference_strength : array (gear, ...) [MPa]
+        From the knee of the curve on where Z_NT is 1, without any larger or smaller Z_NT.
     strength : array (gear, ...) [MPa]
         sigma_HG, at the load cycles.
     notes : (str, ...)
@@ -381,8 +383,14 @@ class FlankFactors:
     Z_W_static: Array
     limit_stresses: Array
     curves: tuple[SNCurve, SNCurve]
+    reference_strength: Array
     strength: Array
     notes: tuple[str, ...]
+
+    @property
+    def static_strength(self) -> Array:
+        """Strength at few load cycles (gear, ...) [MPa]."""
+        return np.stack(np.broadcast_arrays(*(curve.stresses[0] for curve in self.curves)))
 
     def permissible_stress(self, required_safety: float) -> Array:
         """sigma_HP (gear, ...) [MPa] with a required safety S_Hmin."""
@@ -489,7 +497,7 @@ def flank_factors(
     )
     speed = velocity_factor(velocity, softer)
     work, static_work, notes = _work_factors(gears, relative_radius, velocity, viscosity_40, gear_ratio)
-    curves, lives, strengths = [], [], []
+    curves, lives, references, strengths = [], [], [], []
     for place, gear in enumerate(gears):
         factors = flank_curve(gear.kind, limited_pitting=limited_pitting, long_life_factor=long_life_factor)
         reference = gear.limit_stress * lubricant * speed * roughness * work[place] * size_factor
@@ -500,12 +508,14 @@ def flank_factors(
                 f"Z_NT: the static strength of kind {gear.kind!r}, {plain(static)} MPa, counts as the reference",
             )
         curves.append(factors.scaled(reference, static))
+        references.append(reference)
         lives.append(factors.strength(number[place]))
         strengths.append(curves[-1].strength(number[place]))
     return FlankFactors(
         lubricant, speed, roughness, np.stack(np.broadcast_arrays(*work)), size_factor,
         np.stack(lives), np.array(static_work), np.array([gear.limit_stress for gear in gears]),
-        (curves[0], curves[1]), np.stack(np.broadcast_arrays(*strengths)), notes,
+        (curves[0], curves[1]), np.stack(np.broadcast_arrays(*references)),
+        np.stack(np.broadcast_arrays(*strengths)), notes,
     )  # fmt: skip
 
 

@@ -378,6 +378,8 @@ class RootFactors:
     curve : SNCurve
         Strength over load cycles [MPa]: the reference strength has all factors, the static one Y_NT, Y_delta_relT and
         Y_M alone, with a line in logarithms in between.
+    reference_strength : array (...) [MPa]
+        From the knee of the curve on where Y_NT is 1, without any larger or smaller Y_NT.
     strength : array (...) [MPa]
         sigma_FG, at the load cycles.
     notes : (str, ...)
@@ -393,8 +395,14 @@ class RootFactors:
     Y_M: Array
     Y_M_static: Array
     curve: SNCurve
+    reference_strength: Array
     strength: Array
     notes: tuple[str, ...]
+
+    @property
+    def static_strength(self) -> Array:
+        """Strength at few load cycles (...) [MPa]."""
+        return np.asarray(self.curve.stresses[0])
 
     def permissible_stress(self, required_safety: float) -> Array:
         """sigma_FP (...) [MPa] with a required safety S_Fmin."""
@@ -482,7 +490,7 @@ def root_factors(
     notes = _root_notes(gear, notch_parameter, normal_module, bool(np.any(static < reference)))
     return RootFactors(
         TEST_GEAR_CORRECTION, notch, static_notch, surface, size, life.strength(cycles), mean, static_mean, curve,
-        curve.strength(cycles), notes,
+        np.asarray(reference), curve.strength(cycles), notes,
     )  # fmt: skip
 
 

@@ -26,7 +26,7 @@ MOST_RESULTS = 3
 """Beside the first in one table of a page."""
 MOST_TORQUES = 3
 """Whose key figures a page has; of more, the least, that of the pictures and the largest."""
-MARKED = {"edge_pressure_MPa": ", mesh-dependent where sharp"}
+MARKED = {"edge_pressure_MPa": ", of any pair, mesh-dependent where sharp"}
 """What is to be known of figures that no error is known of."""
 BEYOND, WITHIN = "●", "○"
 """Beside a difference that exceeds the errors of both results, or does not."""

@@ -35,8 +35,8 @@ MOST_CASES = 2
 """With a column for each gear in one table of a page."""
 BLOCKS = {
     "torque": "Loads and load factors",
-    "Z_H": "Flanks, {}-2",
-    "Y_F": "Roots, {}-3",
+    "Z_H": "Flanks, {}-2; at limited life sigma_HG lies between static and reference strength",
+    "Y_F": "Roots, {}-3; at limited life sigma_FG lies between static and reference strength",
     "local_flank_stress": "Local",
     "damage": "Damage and lives",
 }

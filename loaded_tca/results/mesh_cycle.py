@@ -349,8 +349,9 @@ class MeshCycle(CycleNumbers, AnalysisResult):
     def findings(self) -> tuple[str, ...]:
         """Return sentences on the largest pressures, if edges make them.
 
-        The largest pressure at an edge under each torque, of pairs that carry a thousandth of the torque and more:
-        where, under what load, how exact, and which relief takes the load off the edge. A peak pressure of slices at an
+        The largest pressure at an edge, of pairs that carry a thousandth of the torque and more: where, under what
+        load, how exact, and which relief takes the load off the edge; of torques that press on the same edge one
+        sentence, under the one with the largest pressure, with the range of the others. A peak pressure of slices at an
         edge, on a pair that carries less than a tenth of the torque, beside the peak pressure of other pairs.
         """
         return findings_of(self)

@@ -121,7 +121,11 @@ def kind_of_edge(figures: Sequence[Figures]) -> str:
     rounded = {bool(entry.get("edge_is_rounded", False)) for entry in figures}
     if rounded == {True}:
         return "at a rounded edge"
-    return "at an edge, mesh-dependent if sharp" if True in rounded else "at a sharp edge, mesh-dependent"
+    return (
+        "at an edge of any pair, mesh-dependent if sharp"
+        if True in rounded
+        else "at a sharp edge of any pair, mesh-dependent"
+    )
 
 
 def without_rounding(value: float, name: str) -> float:

@@ -315,7 +315,8 @@ LEAST_SHARE, SMALL_SHARE = 1e-3, 0.1
 
 def findings_of(result: CycleNumbers) -> tuple[str, ...]:
     """Sentences on what the largest pressures under each torque rest on; see ``MeshCycle.findings``."""
-    by_torque = ((_edge_finding(result, t), peak_finding(result, t)) for t in range(len(result.torque)))
+    edges = _edge_findings(result)
+    by_torque = ((edges.get(t, ""), peak_finding(result, t)) for t in range(len(result.torque)))
     return tuple(sentence for sentences in by_torque for sentence in sentences if sentence)
 
 
@@ -383,15 +384,42 @@ def _remedy(result: CycleNumbers, at: tuple[int, int, int], edges: Sequence[str]
     )
 
 
-def _edge_finding(result: CycleNumbers, torque: int) -> str:
-    """The largest pressure at an edge of pairs that carry a thousandth of the torque: where, and what would remove it.
+def _edge_findings(result: CycleNumbers) -> dict[int, str]:
+    """Sentences on the largest pressure at an edge of pairs that carry a thousandth of the torque, by torques.
 
-    An edge pressure that the peak pressure exceeds is none.
+    An edge pressure that the peak pressure exceeds is none. Where the pressure lies at the same edges under several
+    torques, one sentence has the largest of them, and the range of the others.
     """
-    if torque not in (places := highest_edges(result)):
+    alike: dict[tuple[str, ...], list[tuple[int, int, int]]] = {}
+    for torque, place in highest_edges(result).items():
+        at = torque, *place
+        names = (name for name, one in zip(EDGES, _edges_of_pressure(result, *at), strict=True) if one)
+        alike.setdefault((*names, str(bool(result.edge_is_rounded[at]))), []).append(at)
+    sentences = {}
+    for (*edges, _), places in alike.items():
+        at = max(places, key=lambda one: float(result.edge_pressure[one]))
+        others = [one for one in places if one != at]
+        sentences[at[0]] = _edge_finding(result, at, edges) + _of_other_torques(result, others)
+    return sentences
+
+
+def _of_other_torques(result: CycleNumbers, places: Sequence[tuple[int, int, int]]) -> str:
+    """Torques under which the largest pressure lies at the same edges, and the pressures there, in words."""
+    if not places:
         return ""
-    at = torque, *places[torque]
-    edges = [name for name, one in zip(EDGES, _edges_of_pressure(result, *at), strict=True) if one]
+    torques = sorted(1e-3 * float(result.torque[at[0]]) for at in places)
+    pressures = sorted(float(result.edge_pressure[at]) for at in places)
+    if len(places) == 1:
+        return f"; under {plain(torques[0], 6)} N m the pressure at this edge is {plain(pressures[0])} MPa"
+    return (
+        f"; under {len(places)} other torques from {plain(torques[0], 6)} to {plain(torques[-1], 6)} N m the "
+        f"pressure at this edge is {plain(pressures[0])} to {plain(pressures[-1])} MPa"
+    )
+
+
+def _edge_finding(result: CycleNumbers, at: tuple[int, int, int], edges: Sequence[str]) -> str:
+    """A pressure at edges: where it lies, how far to trust it, and what would remove it."""
+    torque = at[0]
     cap, accuracy = float(result.max_pressure), accuracy_of_edge(result, at)
     elastic = "elastic" if math.isnan(cap) else f"capped at {plain(cap, 6)} MPa"
     share = f"{plain(100.0 * result.load_share[at], 3)} % of the torque"

@@ -12,7 +12,7 @@ from loaded_tca.cli import main
 from loaded_tca.double_helical import DoubleHelicalResult, analyse_double_helical
 from loaded_tca.double_helical import analyse as analyses
 from loaded_tca.plots import HALVES_RATING_PICTURES, plot_safeties, rating_figures
-from loaded_tca.plots.style import NOTE
+from loaded_tca.plots.style import NOTE, note_of
 from loaded_tca.rating.places import is_shown
 from loaded_tca.reports import write_html_report
 from loaded_tca.reports.rating_page import halves_rating_content
@@ -204,7 +204,7 @@ def test_command_and_report_rate_both_halves(tmp_path, monkeypatch, capsys, held
 
 
 OF_HELD_HALVES = ["safeties"] + [
-    f"half_{half}_{name}" for half in "ab" for name in ("safeties", "rating_sn_curves", "rating_damage")
+    f"half_{half}_{name}" for half in "ab" for name in ("safeties", "flank_safety", "rating_sn_curves", "rating_damage")
 ]
 
 
@@ -230,10 +230,12 @@ def test_safeties_of_a_pair_are_those_of_the_worse_half(held_rating, under_bins)
     assert_allclose(strokes[0].get_xdata(), under_bins.half_a.flank_safety[[0, 1], 0], rtol=ROUNDING)
 
 
-def test_pictures_of_held_halves_have_no_places(held_rating, under_bins):
+def test_maps_of_held_halves_are_interpolated_between_their_torques(held_rating, under_bins):
     """Torques of held halves lie between those that were analysed."""
     for rating in (held_rating, under_bins):
-        assert [*rating_figures(rating)] == OF_HELD_HALVES
+        figures = rating_figures(rating)
+        assert [*figures] == OF_HELD_HALVES
+        assert "the nearest analysed torque; stresses interpolated" in note_of(figures["half_a_flank_safety"])
 
 
 def test_pictures_of_a_half_that_carries_nothing():
@@ -255,7 +257,7 @@ def test_pictures_of_a_rating_stand_in_directory_and_report(tmp_path, monkeypatc
     pictures = {path.stem for path in tmp_path.glob("*.png")}
     assert pictures == {*OF_HELD_HALVES}
     shown = halves_rating_content(held)["pictures"]
-    assert [picture.caption[:7] for picture in shown[1:]] == 3 * ["Half a:"] + 3 * ["Half b:"]
+    assert [picture.caption[:7] for picture in shown[1:]] == 4 * ["Half a:"] + 4 * ["Half b:"]
     assert shown[0].note.startswith("two halves, ISO 6336-2:2019")
     assert shown[1].note.startswith("ISO 6336-2:2019")  # the caption says which half
     page = write_html_report(held, tmp_path / "report.html").read_text(encoding="utf-8")

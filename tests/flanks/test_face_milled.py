@@ -162,7 +162,7 @@ def test_undercut_begins_where_the_generated_surface_turns_back_at_the_form_line
 test_face_milled_refuses = refused_calls(
     (
         lambda: GeneratedFlank(on_machine(published_pinion(), sliding_base=-2.0), "concave"),
-        r"pinion, concave flank: undercut: .* 18\.4 mm from mid-face to the toe, 2\.\d+",
+        r"pinion, concave flank: undercut: .* 18\.4 mm from R_m to the toe, 2\.\d+",
     ),
     (
         lambda: GeneratedFlank(on_machine(published_pinion(), radial=5.0), "concave"),

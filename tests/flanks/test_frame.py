@@ -84,9 +84,9 @@ def test_edges_have_a_name_each_in_the_order_of_the_flank():
 @pytest.mark.parametrize(
     ("distance", "angle", "words"),
     [
-        (100.0, 0.5, "in the middle of the face, 0 mm above the pitch cone"),
-        (97.5, 0.49, "2.5 mm from mid-face to the toe, 0.975 mm below the pitch cone"),
-        (101.25, 0.51, "1.25 mm from mid-face to the heel, 1.01 mm above the pitch cone"),
+        (100.0, 0.5, "at the mean cone distance, 0 mm above the pitch cone"),
+        (97.5, 0.49, "2.5 mm from R_m to the toe, 0.975 mm below the pitch cone"),
+        (101.25, 0.51, "1.25 mm from R_m to the heel, 1.01 mm above the pitch cone"),
     ],
 )
 def test_place_on_a_cone_is_told_from_mid_face_and_pitch_cone(distance, angle, words):

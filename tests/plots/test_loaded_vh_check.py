@@ -51,6 +51,22 @@ def test_variants_lie_where_their_errors_say():
     assert len(png_of(figure)) > 10_000
 
 
+@pytest.mark.parametrize("count", [1, 2])
+def test_legend_lies_within_a_picture_of_few_columns(count):
+    """Title, note, names and legend lie within the picture, and the legend not over the panels."""
+    h, v = np.repeat(0.01 * np.arange(count), 3), np.tile([0.05, 0.0, -0.05], count)
+    one = changed(cycle(), on_edge=np.ones_like(cycle().on_edge))
+    variants = dataset({H: h, V: v}, {}, ["ok"] * 3 * count)
+    figure = plot_loaded_vh_check(variants, dict.fromkeys(range(3 * count), one))
+    figure.draw_without_rendering()
+    (legend,) = figure.legends
+    for part in (legend, *figure.texts):
+        box = part.get_window_extent()
+        assert box.x0 >= 0.0, part
+        assert box.x1 <= figure.bbox.x1, part
+    assert legend.get_window_extent().y1 <= min(axes.get_tightbbox().y0 for axes in panels(figure, 3, count).ravel())
+
+
 @pytest.mark.thorough
 def test_legend_below_the_panels_tells_what_frames_and_dots_are():
     for on_edge, told_there in ((True, ["edge contact within the pitch"]), (False, [])):

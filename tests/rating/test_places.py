@@ -90,6 +90,20 @@ def test_sentences_say_what_decides():
     assert {standard, local} < {*rated.notes()}
 
 
+@pytest.mark.parametrize(("beside", "mode"), [(0.99, "root"), (1.01, "flank")])
+def test_what_decides_is_compared_on_the_scale_of_the_torque(beside, mode):
+    """S_H ~ 1/sqrt(T), S_F ~ 1/T: half the required S_H asks for a quarter of the torque, as a quarter of S_F does."""
+    plain_one = solved().rating()
+    of_flank, of_root = (float(getattr(plain_one, f"{kind}_safety").min()) for kind in ("flank", "root"))
+    wanted = {"rating.required_flank_safety": 2.0 * of_flank, "rating.required_root_safety": 4.0 * of_root / beside}
+    rated = solved(**wanted).rating()
+    worst = worst_of(rated)
+    assert worst.kind == mode
+    assert worst.factor == pytest.approx(min(0.25, 0.25 * beside), rel=1e-12)  # rounding
+    formula = {"root": "(S_F/S_Fmin) = 0.2475", "flank": "(S_H/S_Hmin)^2 = 0.25"}[mode]
+    assert f"torque factor {formula}" in findings(rated)[0]
+
+
 def test_findings_of_flanks_alone():
     rated = solved(**{"analysis.root_stress": False, "rating.required_flank_safety": 50.0}).rating()
     standard, local, _ = findings(rated)
@@ -170,7 +184,7 @@ def test_safeties_that_the_standard_has_not_are_left_out():
 def test_report_has_factors_by_gear_and_case(monkeypatch):
     monkeypatch.setattr("loaded_tca.reports.rating_page.rating_figures", lambda _: {})  # seconds, and tested above
     content = rating_content(solved())
-    assert [table.caption for table in content["tables"]] == [
+    assert [table.caption.split(";")[0] for table in content["tables"]] == [
         "Loads and load factors", "Flanks, ISO 6336-2", "Roots, ISO 6336-3", "Local",
         "Damage and lives",
     ]  # fmt: skip

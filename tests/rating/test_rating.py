@@ -57,6 +57,65 @@ def test_life_at_a_required_safety_is_that_whose_safety_it_is():
         assert_allclose(lives.sel(mode="root"), 20000.0, rtol=1e-9)
 
 
+def test_strength_at_limited_life_is_that_between_the_printed_static_and_reference_ones():
+    """ISO 6336-2 and -3, case-hardened: straight in logarithms, flanks from 1e5 to 5e7 cycles, roots 1e3 to 3e6."""
+    rated = solved(**{"rating.life_hours": 10.0, "wheel.strength": HARD | {"root_stress_ratio": -1.0}}).rating()
+    reference = rated.sigma_H_lim * rated.Z_L * rated.Z_v * rated.Z_R * rated.Z_W_reference * rated.Z_X
+    of_root = rated.sigma_F_lim * rated.Y_ST * rated.Y_delta_relT * rated.Y_R_relT * rated.Y_X * rated.Y_M
+    static_root = rated.sigma_F_lim * rated.Y_ST * 2.5 * rated.Y_delta_relT_static * rated.Y_M_static
+    assert (rated.Y_M_static[:, 1] > rated.Y_M[:, 1]).all(), "M is less at rest"
+    for name, low, high, knees in (
+        ("sigma_HG", reference, 1.6 * rated.sigma_H_lim * rated.Z_W_static, (1e5, 5e7)),
+        ("sigma_FG", of_root, static_root, (1e3, 3e6)),
+    ):
+        assert_allclose(getattr(rated, f"{name}_reference"), low, rtol=ROUNDING)
+        assert_allclose(getattr(rated, f"{name}_static"), high, rtol=ROUNDING)
+        start, end = np.log(knees)
+        assert (np.log(rated.cycles) < end).all()
+        assert (np.log(rated.cycles) > start).all()
+        part = (end - np.log(rated.cycles)) / (end - start)
+        assert_allclose(getattr(rated, name), low * (high / low) ** part, rtol=1e-9)  # exponents multiply rounding
+
+
+def test_dynamic_factor_follows_from_the_numbers_beside_it():
+    """Method B by hand, below the main resonance, with f_pb and f_falpha of ISO 1328-1:2013, class 6."""
+    rated = solved(**METHOD_B | {"rating.tolerance_class": 6}).rating()
+    scene = rated.scene
+    module, teeth, width = scene.mesh().pinion.normal_module, scene.pinion.teeth, 18.0
+    assert_allclose(rated.specific_load, 2.0 * np.array([100e3, 200e3]) / (module * teeth * width), rtol=ROUNDING)
+    largest = max(scene.wheel.teeth, teeth) * module
+    # single pitch 0.001 d + 0.4 m + 5, profile form 0.55 m + 5 [um], times 2^((A - 5)/2)
+    pitch, profile = 2.0**0.5 * (0.001 * largest + 0.4 * module + 5.0), 2.0**0.5 * (0.55 * module + 5.0)
+    assert_allclose(rated.f_pb, pitch * cos(radians(20.0)), rtol=0.06)  # the standard rounds to 0.5 um
+    assert_allclose(rated.f_falpha, profile, rtol=0.06)
+    for deviation, allowance in ((rated.f_pb, rated.y_p), (rated.f_falpha, rated.y_f)):
+        assert_allclose(allowance, 0.075 * deviation, rtol=ROUNDING)  # case-hardened
+    softness = rated.single_stiffness / rated.specific_load
+    assert_allclose(rated.B_p, softness * (rated.f_pb - rated.y_p), rtol=ROUNDING)
+    assert_allclose(rated.B_f, softness * (rated.f_falpha - rated.y_f), rtol=ROUNDING)
+    assert_allclose(rated.B_k, np.abs(1.0 - softness * rated.C_a), rtol=ROUNDING)
+    assert (rated.resonance_ratio < 0.5).all()
+    parts = 0.32 * rated.B_p + 0.34 * rated.B_f + 0.23 * rated.B_k  # eps_gamma below 2
+    assert_allclose(rated.K_v, 1.0 + rated.resonance_ratio * parts, rtol=ROUNDING)
+    with pytest.raises(NotAskedError, match=r'rating\.dynamic_factor = "method B"'):
+        _ = solved().rating().B_p
+
+
+def test_notes_on_the_dynamic_factor_name_their_torques_and_bins():
+    """w of the spur pair under 100 and 200 N m, of which 100 N/mm is one between both at a width of 18 mm."""
+    of_torques = solved(**METHOD_B | {"rating.tolerance_class": 6, "operation.pinion_speed_rpm": 60.0}).rating()
+    slow = [note for note in of_torques.notes() if "not needed there" in note]
+    assert [note.partition("there ")[2] for note in slow] == ["(under 100, 200 N m)"]
+    speeds = (60.0, 60.0, 9000.0, 60.0)
+    cases = [{"pinion_torque_Nm": 200.0, "hours": 1.0, "pinion_speed_rpm": speed} for speed in speeds]
+    cases.insert(3, {"pinion_torque_Nm": 0.0, "hours": 1.0, "pinion_speed_rpm": 60.0})
+    of_bins = solved(**METHOD_B | {"rating.tolerance_class": 6, "load.case": cases}).rating()
+    slow = [note for note in of_bins.notes() if "not needed there" in note]
+    assert [note.partition("there ")[2] for note in slow] == ["(bins 1 to 2, 5 of 5)"]
+    many = replace(of_bins.inputs, cases=replace(of_bins.inputs.cases, is_spectrum=True))
+    assert many.cases_in_words(np.arange(40) % 2 == 0) == "20 of 40 bins"
+
+
 def test_load_cycles_count_turns_of_each_gear():
     rated, scene = solved().rating(), solved().scene
     turns = 1500.0 * 60.0 * 20000.0
@@ -186,6 +245,7 @@ def test_edge_pressure_that_local_safeties_leave_out_is_told(error, words):
     assert told == [*rated.warnings]
     (sentence,) = told
     assert "local safeties of flanks leave edges out, whose pressure is 4312 MPa under 100 N m" in sentence
+    assert "on pairs that carry 0.1% of the torque or more" in sentence
     assert words in sentence
     assert_array_equal(rated.local_flank_safety, plain.local_flank_safety)
     lower = 0.9 * np.nan_to_num(solved().peak_pressure).max(axis=(1, 2)).min()

@@ -4,13 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from matplotlib.text import Text
+from matplotlib.text import Annotation, Text
 from numpy.testing import assert_allclose, assert_array_equal
 
+from loaded_tca.arrays import GEARS
 from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.output import write_rating
-from loaded_tca.plots import RATING_PICTURES, plot_flank_safety, plot_safeties
+from loaded_tca.plain import plain
+from loaded_tca.plots import RATING_PICTURES, plot_flank_safety, plot_root_safety, plot_safeties
 from loaded_tca.plots import rating_figures as rating_pictures
+from loaded_tca.plots.style import note_of
 from loaded_tca.rating import flank_safeties, root_safeties
 from loaded_tca.rating.cases import cases_of
 from loaded_tca.rating.findings import findings
@@ -41,6 +44,9 @@ def under(cases, **changes):
     """The spur pair solved under 100 and 200 N m, rated under bins."""
     spectrum = {"analysis.torques_Nm": (100.0, 200.0), "load.case": cases}
     return solved(**GIVEN | SLOPES | spectrum | changes).rating()
+
+
+ON_OTHER_FLANKS = [*bins((0.0, 1.0)), *bins((150.0, 1.0), reversed=True)]
 
 
 def alone(**changes):
@@ -296,8 +302,8 @@ def test_bins_of_bevel_pairs_add_up_by_hours():
     assert "ISO 10300-2 and -3:2023, method B1, ISO 6336-6:2019 with 2 bins" in rated.scope
 
 
-def test_places_are_those_of_bins_whose_torque_was_solved():
-    rated = under([*bins((150.0, 1.0)), *bins((200.0, 1.0), reversed=True), *bins((200.0, 1.0))])
+def test_places_are_those_of_bins_that_load_the_analysed_flanks():
+    rated = under([*bins((0.0, 1.0)), *bins((200.0, 1.0), reversed=True), *bins((200.0, 1.0))])
     places = flank_safeties(rated, 2)
     assert_allclose(places.safety.min(axis=1), rated.local_flank_safety[2], rtol=ROUNDING)
     assert "(bin 3 of 3)" in plot_flank_safety(rated).get_suptitle()
@@ -307,7 +313,7 @@ def test_places_are_those_of_bins_whose_torque_was_solved():
     for gear in range(2):
         least = np.nanmin(root_safeties(rated, 2, gear).safety)
         assert_allclose(least, rated.local_root_safety[2, gear], rtol=ROUNDING)
-    for case, words in ((0, "case: 0, 150 N m, was not analysed"), (1, "case: 1, 200 N m, is reversed")):
+    for case, words in ((0, "case: 0, 0 N m, is idle"), (1, "case: 1, 200 N m, is reversed")):
         with pytest.raises(InputError, match=words):
             root_safeties(rated, case, 0)
 
@@ -320,23 +326,74 @@ def test_maps_are_those_of_the_bin_of_the_largest_damage():
     for name in ("local_flank_safety", "local_root_safety"):
         # the small torque has the smaller safety, and is borne for ever; the large one, of 1800 load cycles, is not
         assert rated.values(name).min(axis=1).argmin() == 1
-        assert worst_case(rated, name) == (0, "largest damage of bins with an analysed torque")
+        assert worst_case(rated, name) == (0, "largest damage of bins")
     figure = plot_flank_safety(rated)
     assert "bin 1 of 2" in figure.get_suptitle()
     assert any("largest damage of bins" in text.get_text() for text in figure.findobj(Text))
     assert worst_case(under(rows, **forever, **dict.fromkeys(safe, 0.5)), name)[0] == 1, "no damage at all"
 
 
-def test_pictures_of_places_are_left_out_where_no_bin_was_solved(monkeypatch):
+@pytest.mark.parametrize(("more", "highest"), [((), 0.0), (bins((100.0, 1.0), reversed=True), -1.2 * 100.0 / 180.0)])
+def test_maps_between_analysed_torques_are_those_of_the_nearest_with_interpolated_stresses(more, highest):
+    """By hand: between two torques stresses and R are straight over the logarithm of the torque, stresses in theirs."""
+    rated, single = under([*bins((180.0, 1000.0), (200.0, 0.001)), *more]), alone()
+    part = np.log(200.0 / 180.0) / np.log(200.0 / 100.0)
+    near, there = flank_safeties(rated, 1), flank_safeties(rated, 0)
+    assert_array_equal(there.point, near.point)
+    assert_allclose(there.safety.min(axis=1), rated.local_flank_safety[0], rtol=ROUNDING)
+    less = (single.local_flank_stress[1] / single.local_flank_stress[0]) ** part
+    strength = rated.sigma_HG[0] / rated.sigma_HG[1]  # Z_NT of more load cycles
+    ratios = np.broadcast_to(less * strength[:, None], near.safety.shape)
+    assert_allclose(there.safety / near.safety, ratios, rtol=ROUNDING)
+    for gear in range(2):
+        places, stress = root_safeties(rated, 0, gear).safety, rated.result.root_stress[gear]
+        assert_allclose(np.nanmin(places), rated.local_root_safety[0, gear], rtol=ROUNDING)
+        tensions = np.nanmax(rated.result.root_tension[..., gear], axis=1)
+        of_place = single.local_root_stress[:, gear] if highest == 0.0 else tensions
+        tense = stress.largest[1] > 0.0
+        largest, smallest = stress.largest[1][tense], stress.smallest[1][tense]
+        change = part * (single.local_stress_ratio[0, gear] - single.local_stress_ratio[1, gear])
+        reversal = np.clip(smallest / largest + change, -1.2, highest)
+        # Goodman's line, annex B of ISO 6336-3:2006, case-hardened
+        sensitivity = 0.8 - 0.15 * rated.Y_S[0, gear]
+        mean = 1.0 / (1.0 - reversal * (1.0 - sensitivity) / (1.0 + sensitivity))
+        top = tensions[1] / np.nanmax(stress.largest[1]) * (of_place[0] / of_place[1]) ** part
+        expected = rated.local_sigma_FG[0, gear] / rated.local_Y_M[0, gear] * mean / (1.6 * top * largest)
+        assert_allclose(places[tense], expected, rtol=ROUNDING)
+
+
+def test_maps_are_those_of_the_worst_bin_though_its_torque_was_not_analysed():
+    rated = under(bins((180.0, 1000.0), (200.0, 0.001)))
+    assert rated.local_flank_safety[0].min() < 0.9 * rated.local_flank_safety[1].min(), "of far more load cycles"
+    assert worst_case(rated, "local_flank_safety")[0] == 0
+    for mode, figure in ((2, plot_flank_safety(rated)), (3, plot_root_safety(rated))):
+        assert "180 N m (bin 1 of 2)" in figure.get_suptitle()
+        together = " | ".join(f"{gear} {plain(rated.spectrum_safety[n, mode])}" for n, gear in enumerate(GEARS))
+        assert f"all bins together: {together}" in note_of(figure)
+        assert "places as under 200 N m, the nearest analysed torque; stresses interpolated" in note_of(figure)
+        crosses = [float(text.get_text()) for text in figure.findobj(Annotation)]
+        # numbers of a picture have four digits
+        expected = rated.values(("local_flank_safety", "local_root_safety")[mode - 2])[0]
+        assert_allclose(crosses, expected, rtol=1e-3)
+
+
+def test_pictures_of_places_are_left_out_where_no_bin_loads_the_analysed_flanks(monkeypatch):
     drawn = {name: picture._replace(draw=lambda _: None) for name, picture in RATING_PICTURES.items()}
     monkeypatch.setattr("loaded_tca.plots.rating.RATING_PICTURES", drawn)
     solved_bin = {*rating_pictures(under(bins((200.0, 1.0))))}
-    assert solved_bin - {*rating_pictures(under(bins((150.0, 1.0))))} == {"flank_safety", "root_safety"}
+    assert solved_bin - {*rating_pictures(under(ON_OTHER_FLANKS))} == {
+        "flank_safety",
+        "root_safety",
+    }
 
 
 def test_picture_of_an_earlier_rating_does_not_stay(tmp_path):
     (tmp_path / "flank_safety.png").write_bytes(b"of other bins")
-    files = write_rating(under(bins((150.0, 1.0))), tmp_path, outdated=["flank_safety.png", "rating.csv"])
+    files = write_rating(
+        under(ON_OTHER_FLANKS),
+        tmp_path,
+        outdated=["flank_safety.png", "rating.csv"],
+    )
     assert {*tmp_path.iterdir()} == {*files} == {tmp_path / "rating.json", tmp_path / "rating.csv"}
 
 
@@ -353,6 +410,16 @@ def test_roots_under_reversed_bins_have_the_largest_tension():
     rated = under([*bins((200.0, 1.0)), *bins((200.0, 1.0), reversed=True)])
     assert_allclose(rated.local_root_stress[1], 1.6 * np.nanmax(rated.result.root_tension[1], axis=0), rtol=ROUNDING)
     assert_array_equal(rated.local_stress_ratio[1], -1.2)
+
+
+@pytest.mark.parametrize(("beside", "failure"), [(0.99, "tooth breakage"), (1.01, "pitting")])
+def test_what_decides_of_all_bins_is_compared_on_the_scale_of_the_torque(beside, failure):
+    cases = bins((100.0, 30.0), (200.0, 10.0))
+    of_flank, of_root, *_ = under(cases).spectrum_safety.min(axis=0)
+    wanted = {"rating.required_flank_safety": 2.0 * of_flank, "rating.required_root_safety": 4.0 * of_root / beside}
+    sentence = findings(under(cases, **wanted))[0]
+    assert f"the critical failure is {failure} of" in sentence
+    assert f"= {min(0.25, 0.2475 if beside < 1.0 else 0.25)}" in sentence
 
 
 def test_sentences_and_report_say_which_bin_does_the_damage(monkeypatch):

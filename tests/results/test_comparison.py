@@ -216,8 +216,8 @@ def test_edge_pressure_is_named_by_the_edges_of_all_results():
     sharp = result("misaligned", positions=2)
     rounded = changed(sharp, edge_is_rounded=np.ones_like(sharp.edge_is_rounded))
     for results, label in (
-        ([sharp, sharp], "at a sharp edge, mesh-dependent [MPa]"),
-        ([rounded, sharp], "at an edge, mesh-dependent if sharp [MPa]"),
+        ([sharp, sharp], "at a sharp edge of any pair, mesh-dependent [MPa]"),
+        ([rounded, sharp], "at an edge of any pair, mesh-dependent if sharp [MPa]"),
         ([rounded, rounded], "at a rounded edge [MPa]"),
         ([rounded, result(positions=1)], "at a rounded edge [MPa]"),  # the other one reaches no edge
     ):

@@ -342,7 +342,7 @@ def test_summary_has_a_column_per_torque():
 def test_summary_tells_what_limits_it():
     text = edge_contact().summary()
     assert "note: at 2 of 2 positions the contact reaches an edge of a flank" in text
-    assert line(text, "at a sharp edge, mesh-dependent [MPa]")
+    assert line(text, "at a sharp edge of any pair, mesh-dependent [MPa]")
     assert "note: at 1 of 5 positions (all torques) no tooth pair is in contact" in with_a_gap().summary()
     assert "note" not in result(positions=1).summary()
 
@@ -362,7 +362,7 @@ def test_pressure_at_an_edge_is_never_the_peak():
     assert figures["edge_pressure_MPa"] == 2.0 * whole.peak_pressure.max()
     assert_allclose(figures["pinion_angle_at_edge_deg"], np.degrees(cycle.pinion_angle[4]))
     assert "note: at 1 of 5 positions the contact reaches an edge of a flank" in cycle.summary()
-    shown = line(cycle.summary(), "at a sharp edge, mesh-dependent [MPa] | its force [N]").split()[-3:]
+    shown = line(cycle.summary(), "at a sharp edge of any pair, mesh-dependent [MPa] | its force [N]").split()[-3:]
     assert shown == [f"{figures['edge_pressure_MPa']:.4g}", "|", f"{cycle.normal_force[0, 4, 0]:.4g}"]
 
 

@@ -2,9 +2,11 @@
 
 import re
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray
 
 from loaded_tca.analysis import analyse
 from loaded_tca.errors import AccuracyWarning
@@ -36,6 +38,29 @@ def test_finding_names_the_edges_of_the_largest_edge_pressure_and_the_relief_tha
         "this edge even without load; analyse again with several starts and amounts: a short relief presses"
     ) in sentences[0]
     assert "mating gear" not in sentences[0]  # ends of the face
+
+
+def test_torques_that_press_on_one_edge_are_one_finding_under_the_largest_pressure(monkeypatch):
+    one = result("misaligned", positions=2)
+    parts = [
+        one.dataset.assign(edge_pressure=factor * one.dataset.edge_pressure).assign_coords(torque=factor * one.torque)
+        for factor in (1.0, 2.0, 3.0, 4.0)
+    ]
+    whole = xarray.concat(parts, "torque", data_vars="minimal", coords="minimal", compat="override")
+    four = replace(one, dataset=whole, maps=list(one.maps) * 4, states=None)
+    (sentence,) = [told for told in four.findings() if told.startswith("edge pressure")]
+    largest = [np.nanmax(np.where(part.load_share >= 1e-3, part.edge_pressure, 0.0)) for part in parts]
+    assert sentence.startswith(f"edge pressure {largest[3]:.4g} MPa at 520 N m on ")
+    assert sentence.endswith(
+        "; under 3 other torques from 130 to 390 N m the pressure at this edge is "
+        f"{largest[0]:.4g} to {largest[2]:.4g} MPa"
+    )
+    tips = [np.array([name == edge for name in EDGES]) for edge in ("wheel tip", "pinion tip")]
+    monkeypatch.setattr("loaded_tca.results.warnings._edges_of_pressure", lambda _, torque, *__: tips[torque > 1])
+    lower, upper = [told for told in four.findings() if told.startswith("edge pressure")]
+    assert lower.startswith(f"edge pressure {largest[1]:.4g} MPa at 260 N m on wheel tip (")
+    assert lower.endswith(f"; under 130 N m the pressure at this edge is {largest[0]:.4g} MPa")
+    assert upper.startswith(f"edge pressure {largest[3]:.4g} MPa at 520 N m on pinion tip (")
 
 
 def test_finding_at_a_root_edge_has_the_gear_and_what_the_mesh_deflects_not_a_pair_that_just_begins_to_carry():

@@ -31,7 +31,7 @@ def test_first_figure_is_the_peak_pressure_and_an_edge_stands_apart_with_its_for
     text = summary(edge_pressure_MPa=20070.0, normal_force_at_edge_N=0.06)
     first = next(row for row in text.splitlines() if "[MPa]" in row)
     assert first.startswith("peak pressure [MPa]")
-    assert cells(text, "at a sharp edge, mesh-dependent [MPa] | its force [N]") == ["20070", "|", "0.06"]
+    assert cells(text, "at a sharp edge of any pair, mesh-dependent [MPa] | its force [N]") == ["20070", "|", "0.06"]
     assert "at an edge" not in summary()
 
 
@@ -43,7 +43,7 @@ def test_edges_are_told_apart_by_whether_they_are_rounded():
     sharp = figures | known | {"edge_is_rounded": False}
     for entries, label, errors in (
         ([rounded, rounded, figures], "at a rounded edge", ["1.2", "1.2", "-"]),
-        ([rounded, sharp], "at an edge, mesh-dependent if sharp", ["1.2", "-"]),
+        ([rounded, sharp], "at an edge of any pair, mesh-dependent if sharp", ["1.2", "-"]),
     ):
         text = summary_text("title", "scope", entries)
         assert cells(text, f"{label} [MPa] | its force [N]")[:3] == ["2000", "|", "5"]
