@@ -192,7 +192,7 @@ def _attributes_of(result: CycleNumbers | Revolution, caveat: str) -> dict[str, 
     driving, analysis = "pinion" if result.gear_pair.driving > 0 else "wheel", result.scene.analysis
     held = ", from bores that are held rigid" if analysis.teeth_bend else ""
     supported = ON_SUPPORTS if result.scene.is_supported else ""
-    of_half = [f"Only {line}" for line in filter(None, [result.left_out])]
+    of_half = [f"Only {line}." for line in filter(None, [result.left_out])]
     caveats = *textwrap.wrap("".join(of_half), LINE), *filter(None, (supported, caveat))
     lines = CONVENTIONS, f"The {driving} drives; {analysis.bending}{held}.", *caveats
     return {"title": result.scene.title, "version": result.version, "conventions": "\n".join(lines)}
