@@ -8,6 +8,7 @@ import pytest
 
 from loaded_tca import InputError, read_scene
 from loaded_tca.cli import main
+from loaded_tca.cli.inputs import directory_of
 from loaded_tca.double_helical import DoubleHelicalResult
 from loaded_tca.plots import DOUBLE_HELICAL_PICTURES
 from loaded_tca.reports import write_html_report
@@ -16,6 +17,13 @@ from loaded_tca.studies import Study, rank_variants, run_study
 from tests.samples.double_helical import FEW, SCENE, analysed, unlike_halves
 
 FILES = ["double_helical.csv", "double_helical.json", "double_helical.nc", "half_a.nc", "half_b.nc"]
+
+
+def put(directory, *names):
+    """Files of an older result."""
+    for name in names:
+        (directory / name).parent.mkdir(parents=True, exist_ok=True)
+        (directory / name).write_bytes(b"old")
 
 
 @pytest.fixture
@@ -64,6 +72,29 @@ def test_files_of_a_half_replace_none_of_the_pair(written):
         assert main([command, str(written / "half_b.nc")]) == 0
     assert {path: path.read_bytes() for path in written.iterdir() if path.is_file()} == before
     assert {path.name for path in (written / "half_b").iterdir()} > {"dynamics.csv", "report.html"}
+
+
+GONE = (
+    *("report.html", "sensitivities.csv", "rating.json", "root_safety.png"),
+    *("half_a/dynamics.csv", "half_a/report.html", "half_a/torque_80_Nm_position_2/pressure_map.png"),
+    "half_a_under_400_Nm/report.html",
+)
+KEPT = "notes.txt", "half_a/notes.txt", "half_b/result.nc", "half_b/report.html", "halves/report.html"
+
+
+@pytest.mark.usefixtures("blank_pictures")
+def test_run_leaves_no_file_of_an_earlier_pair_and_of_its_halves(written):
+    """But those of the user, and of a result that has a folder with the name of a half for its own."""
+    put(written, *GONE, *KEPT)
+    assert main(["run", str(written.parent / "scene.toml"), "--out", str(written)]) == 0
+    assert not [name for name in GONE if (written / name).exists()]
+    assert all((written / name).read_bytes() == b"old" for name in KEPT)
+    assert {path.name for path in written.iterdir() if path.is_dir()} == {"half_a", "half_b", "halves"}
+
+
+def test_report_of_a_half_under_another_torque_goes_into_a_folder_of_its_own(tmp_path):
+    assert directory_of(tmp_path / "half_a_under_400_Nm.nc") == tmp_path / "half_a_under_400_Nm"
+    assert directory_of(tmp_path / "result.nc") == tmp_path
 
 
 CHANGED = "--set", "pair.axial_stiffness_N_per_um=20", "--set", "wheel.apex_runout_um=12"

@@ -39,6 +39,20 @@ def test_stage_is_written_with_its_tables_and_pictures(tmp_path, capsys, monkeyp
     assert float(rows[1]["planet_2_share"]) == pytest.approx(float(result.planet_share[0, 1, 2]), rel=1e-8)
 
 
+@pytest.mark.usefixtures("blank_pictures")
+@pytest.mark.filterwarnings("ignore::loaded_tca.AccuracyWarning")
+def test_stage_leaves_no_file_of_an_earlier_one_and_of_its_meshes(tmp_path, monkeypatch):
+    monkeypatch.setattr("loaded_tca.stages.analyse_stage", lambda *_, **__: analysed()[0])
+    gone = "report.html", "rating.csv", "sun_mesh/report.html", "sun_mesh/dynamics.csv", "ring_mesh/interactive.html"
+    for name in (*gone, "sun_mesh/notes.txt"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_bytes(b"old")
+    assert main(["stage", STAGE, "--out", str(tmp_path), *options(*QUICK)]) == 0
+    assert not [name for name in gone if (tmp_path / name).exists()]
+    assert [path.name for path in (tmp_path / "sun_mesh").iterdir()] == ["notes.txt"]
+    assert not (tmp_path / "ring_mesh").exists()
+
+
 def test_bad_input_is_one_line(tmp_path, capsys):
     assert main(["stage", STAGE, "--out", str(tmp_path), *options("stage.pin_radial_um=[1.0]")]) == 2
     assert capsys.readouterr().err.splitlines() == [

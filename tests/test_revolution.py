@@ -232,6 +232,36 @@ def test_spectrum_of_a_hunting_period_has_orders_of_both_gears():
     assert named["wheel 1"] == pytest.approx(3.0, abs=1e-9)
 
 
+TWICE_A_TURN = [10.0 * float(np.cos(4.0 * np.pi * tooth / 40)) for tooth in range(40)]
+OF_BOTH_GEARS = {
+    "the wheel deviates": ({"wheel.pitch.index_um": TWICE_A_TURN}, "wheel 2", "mesh 1 -2 wheel"),
+    "the pinion deviates": ({"pinion.pitch.runout_um": 20.0}, "pinion 1", "mesh 1 -1 pinion"),
+    "both deviate": (
+        {"wheel.pitch.index_um": TWICE_A_TURN, "pinion.pitch.runout_um": 1.0},
+        "pinion 1 = wheel 2",
+        "mesh 1 -1 pinion = -2 wheel",
+    ),
+}
+
+
+@pytest.mark.parametrize(("deviations", "largest", "sideband"), OF_BOTH_GEARS.values(), ids=OF_BOTH_GEARS)
+def test_order_of_both_gears_has_the_names_of_those_that_deviate(deviations, largest, sideband):
+    """Of 20/40 the first order of the pinion is the second one of the wheel: 2 cycles in 40 pitches."""
+    scene = helical({**CONTACT, "pinion.teeth": 20, "wheel.teeth": 40, "analysis.torques_Nm": [0.0]})
+    turn = revolution_of(scene, "wheel", 2, **deviations)
+    spectrum = turn.spectrum()
+    assert spectrum.amplitude.argmax() == 1
+    assert spectrum.kind[1] == largest
+    assert spectrum.kind[40 - 2 - 1] == sideband
+    by_number = [turn.order_amplitude(spectrum, *order) for order in (("pinion", 1), ("wheel", 2))]
+    assert by_number == [spectrum.amplitude[1]] * 2  # by whatever name
+
+
+def test_order_that_a_revolution_does_not_have_has_no_amplitude():
+    turn = small_turn()
+    assert np.isnan(turn.order_amplitude(turn.spectrum(), "mesh", 100))
+
+
 def test_largest_of_each_tooth_is_that_of_the_positions_where_it_is_in_mesh():
     turn = small_turn()
     data, teeth = turn.dataset, turn.by_tooth("pinion")

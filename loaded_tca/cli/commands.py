@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from loaded_tca.cli.directories import (
     INTERACTIVE_REPORT,
     REPORT,
+    files_beside_joined,
     files_beside_revolution,
     files_of_ratings,
     outdated_files,
@@ -164,8 +165,7 @@ def _run_double_helical(scene: DoubleHelicalScene, directory: Path) -> None:
     effort = expected_double_helical_effort(scene)
     with progress_bar(effort, "states of both halves", effort.contacts // 2) as progress:
         result = analyse_double_helical(scene, progress=progress)
-    written = _written(result, directory, double_helical_figures(result), files_of_ratings())
-    _show_rated(result, directory, written)
+    _show_rated(result, directory, _new(result, directory, double_helical_figures(result), files_beside_joined()))
 
 
 def revolution(options: argparse.Namespace) -> None:
@@ -184,7 +184,7 @@ def revolution(options: argparse.Namespace) -> None:
     effort = expected_revolution_effort(scene)
     with progress_bar(effort, "states", effort.contacts // 2) as progress:
         result = analyse_revolution(scene, progress=progress)
-    written = _written(result, directory, revolution_figures(result), files_beside_revolution())
+    written = _new(result, directory, revolution_figures(result), files_beside_revolution())
     print_summary(result.summary(), written)
 
 
@@ -199,8 +199,15 @@ def _double_helical_revolution(scene: DoubleHelicalScene, directory: Path) -> No
     effort = expected_halves_revolution_effort(scene)
     with progress_bar(effort, "states of both halves", effort.contacts // 2) as progress:
         result = analyse_double_helical_revolution(scene, progress=progress)
-    written = _written(result, directory, halves_revolution_figures(result), files_beside_revolution())
+    written = _new(result, directory, halves_revolution_figures(result), files_beside_revolution())
     print_summary(result.summary(), written)
+
+
+def _new(result: Result, directory: Path, figures: Mapping[str, Figure], names: set[str]) -> tuple[Path, ...]:
+    """Write the files of a new result with its pictures; what is of an old one, also of its parts, goes."""
+    written = _written(result, directory, figures, outdated_files(directory, names))
+    remove_empty_parts(directory)
+    return written
 
 
 def _written(
@@ -365,7 +372,7 @@ def stage(options: argparse.Namespace) -> None:
     states = states_of(asked)
     with progress_bar(expected_stage_effort(asked), "states of both meshes", states) as progress:
         result = analyse_stage(asked, progress=progress)
-    _show_rated(result, directory, _written(result, directory, stage_figures(result), files_of_ratings()))
+    _show_rated(result, directory, _new(result, directory, stage_figures(result), files_beside_joined()))
 
 
 def plot(options: argparse.Namespace) -> None:

@@ -9,6 +9,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from loaded_tca.cli.directories import JOINED
 from loaded_tca.errors import GeometryError, InputError, named, reason_of, require
 from loaded_tca.input_files import read_text
 from loaded_tca.plain import plain
@@ -235,11 +236,7 @@ def _file_in(path: Path, *others: str) -> Path:
 
 def directory_of(file: Path) -> Path:
     """Where the files of a result go: its folder, or in it one of its own where it is a mesh of a stage or a half."""
-    from loaded_tca.double_helical import DoubleHelicalResult, DoubleHelicalRevolution
-    from loaded_tca.stages.result import StageResult
-
-    kinds = DoubleHelicalResult, DoubleHelicalRevolution, StageResult
-    is_part = any(file.name in kind.PARTS.values() for kind in kinds)
+    is_part = file.suffix == ".nc" and JOINED.fullmatch(file.stem)
     return file.parent / file.stem if is_part else file.parent
 
 

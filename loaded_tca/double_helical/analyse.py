@@ -165,7 +165,7 @@ def settled(scene: DoubleHelicalScene, axial: float, shown: StatesDone, way: Hal
     torques = _even_torques(scene)
     for _ in range(MOST_ROUNDS):
         scenes = scene.half_scenes(axial, [[1e-3 * torque for torque in of_half] for of_half in torques])
-        analysed = _analysed(scenes, shown, way)
+        analysed = _analysed(scenes, shown, way, scene.geometry.floating)
         state = balance_of(scene, [half.cycle for half in analysed], np.asarray(scene.torques))
         places, wanted = _places(scene, state), _wanted(scene, state, torques)
         moved = float(places.mean())
@@ -195,7 +195,7 @@ def _settled_on_shafts(scene: DoubleHelicalScene, axial: float, shown: StatesDon
     torques, loads = _even_torques(scene), loads_at_first(scene, axial)
     for _ in range(MOST_ON_SHAFTS):
         scenes = scene.half_scenes(axial, [[1e-3 * torque for torque in of_half] for of_half in torques], loads)
-        analysed = _analysed(scenes, shown, way)
+        analysed = _analysed(scenes, shown, way, scene.geometry.floating)
         cycles = [half.cycle for half in analysed if isinstance(half.cycle, MeshCycle)]  # both
         on_shafts = OnShafts(scene, scenes, cycles, loads)
         state, further = on_shafts.balance()
@@ -259,8 +259,10 @@ class StatesDone:
             self.progress(self.before + done, self.total)
 
 
-def _analysed(scenes: Sequence[CylindricalScene], shown: StatesDone, way: HalfAnalysis) -> tuple[_Half, _Half]:
-    """Both halves; halves that are alike are analysed once."""
+def _analysed(
+    scenes: Sequence[CylindricalScene], shown: StatesDone, way: HalfAnalysis, floating: str
+) -> tuple[_Half, _Half]:
+    """Both halves of a pair of which a gear floats; halves that are alike are analysed once."""
     first, second = scenes
     alike = _are_alike(first, second)
     halves: list[_Half] = []
@@ -268,12 +270,25 @@ def _analysed(scenes: Sequence[CylindricalScene], shown: StatesDone, way: HalfAn
         shown.start(len(one.torques) * way.positions(one))
         name = "both halves" if alike else f"half {HALVES[half]}"
         with named(name), noted_accuracy_warnings(given=False, alone=True) as sentences:
-            halves.append(_Half(way.solve(one, shown), [f"{name}: {_of_half(sentence)}" for sentence in sentences]))
+            cycle = way.solve(one, shown)
+            cycle.dataset.attrs["left_out"] = _left_out(HALVES[half], floating)
+            halves.append(_Half(cycle, [f"{name}: {_of_half(sentence)}" for sentence in sentences]))
     if alike:
         cycle = halves[0].cycle
-        same = replace(cycle, scene=second)
+        same = replace(cycle, scene=second, dataset=cycle.dataset.assign_attrs(left_out=_left_out(HALVES[1], floating)))
         halves.append(_Half(replace(same, states=None) if isinstance(same, MeshCycle) else same, []))
     return halves[0], halves[1]
+
+
+def _left_out(half: str, floating: str) -> str:
+    """Sentence on what the numbers of a half leave out."""
+    whole = "the result of the pair has transmission error and stiffness of both halves together"
+    if floating == "none":
+        return f"half {half} of a double helical pair: the stiffness is that of this half alone; {whole}"
+    return (
+        f"half {half} of a double helical pair: the transmission error is that of gears held along their axes, without "
+        f"the axial motion of the {floating}, which floats, and the stiffness is that of this half alone; {whole}"
+    )
 
 
 def _are_alike(first: CylindricalScene, second: CylindricalScene) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -66,11 +65,9 @@ HALVES_REVOLUTION_NUMBERS: dict[str, Number] = {
 """Numbers of a revolution of a double helical pair."""
 
 
-def _order(kind: str, under: UnderTorque) -> float:
-    """Amplitude of an order of the axial motion; NaN where the pitches and positions have no order of this name."""
-    spectrum = under.result.axial_spectrum(under.row)
-    amplitudes = dict(zip(spectrum.kind.tolist(), spectrum.amplitude.tolist(), strict=True))
-    return float(amplitudes.get(kind, math.nan))
+def _first_order(of: str, under: UnderTorque) -> float:
+    """Amplitude of the first order of a gear or of the mesh in the axial motion; NaN: there is none."""
+    return float(under.result.order_amplitude(under.result.axial_spectrum(under.row), of))
 
 
 HALVES_REVOLUTION_FIGURES: dict[str, Figure] = {
@@ -79,10 +76,10 @@ HALVES_REVOLUTION_FIGURES: dict[str, Figure] = {
     **{name: figure for name, figure in FIGURES.items() if not any(left in name for left in (*_LEFT_OUT, "root"))},
     "axial_motion_span_um": replace(FIGURES["axial_motion_span_um"], label="  over the revolution, peak to peak"),
     **{
-        f"axial_motion_{kind.replace(' ', '_')}_um": Figure(
-            of=partial(_order, kind), label=f"axial motion: amplitude of order {kind}"
+        f"axial_motion_{of}_1_um": Figure(
+            of=partial(_first_order, of), label=f"axial motion: amplitude of order {of} 1"
         )
-        for kind in ("pinion 1", "wheel 1", "mesh 1")
+        for of in (*GEARS, "mesh")
     },
 }
 """Key figures by their names."""

@@ -31,6 +31,8 @@ from loaded_tca.plain import plain
 STEEL = {"youngs_modulus_MPa": 206000.0, "poisson_ratio": 0.3}
 ALIKE = 1e-6
 """Relative difference of two numbers that are the same."""
+ROUNDED_ROOT = 0.02
+"""Difference over the module of root diameters that are one: 0.01 mm at module 0.5, to which drawings round."""
 FLANKS = "left", "right"
 MATERIAL_KEYS = {
     "density_kg_m3": ("density", DENSITY),
@@ -407,8 +409,11 @@ def gear_section(
     if ring:
         section |= _cutter(reading, component, flank)
     by_tool = None if ring else _by_tool(reading, component, flank, module, "dedendum_coefficient")
-    if by_tool is None and (root := reading.number(component, "root_diameter", LENGTH)) is not None:
-        section["root_diameter_mm"] = abs(root)
+    if (root := reading.number(component, "root_diameter", LENGTH)) is not None:
+        if by_tool is None:
+            section["root_diameter_mm"] = abs(root)
+        else:
+            _compare_roots(reading, component, root, by_tool, section, pair)
     elsewhere = {"dedendum_coefficient": "root_diameter_mm", "root_radius_coefficient": "cutter"}
     section |= _own_rack(reading, component, flank, pair, [name for name in RACK if elsewhere[name] not in section])
     if not ring and (bore := reading.number(component, "inner_diameter", LENGTH)):
@@ -417,6 +422,24 @@ def gear_section(
     if roughness:
         section["roughness_Ra_um"] = round(roughness, DIGITS)
     return section
+
+
+def _compare_roots(
+    reading: Reading, gear: Component, root: float, dedendum: float, section: dict[str, Any], pair: dict[str, Any]
+) -> None:
+    """Note a root diameter [mm] that is neither the nominal nor the generated one of the dedendum by the tool."""
+    if "profile_shift" not in section:
+        return  # it follows from the centre distance, and the root with it
+    module, shift = pair["normal_module_mm"], section["profile_shift"]
+    pressure, helix = (math.radians(pair.get(f"{name}_angle_deg", 0.0)) for name in ("pressure", "helix"))
+    thinner = 1e-3 * section.get("thickness_allowance_um", 0.0) / (2.0 * math.tan(pressure))
+    nominal = module * (section["teeth"] / math.cos(helix) - 2.0 * (dedendum - shift))
+    cut = nominal + 2.0 * thinner
+    if min(abs(root - nominal), abs(root - cut)) > ROUNDED_ROOT * module:
+        reading.note(
+            f"{gear}: the addendum of the tool is taken, which cuts a root diameter of {plain(cut, 6)} mm; "
+            f"root_diameter, {plain(root, 6)} mm, contradicts it and is not taken"
+        )
 
 
 def _profile_shift(reading: Reading, flank: Component | None, module: float, angle: float) -> dict[str, float]:

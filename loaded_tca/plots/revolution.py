@@ -17,8 +17,9 @@ from loaded_tca.results.revolution import OverTurns, Revolution
 from loaded_tca.results.summary import shown_torque
 
 RIGID = "0.35"
-KINDS = {"other": "0.75", "wheel": "#0072b2", "pinion": "#009e73", "mesh": "#d55e00"}
-"""Colours of orders, from the lowest layer up: others, of the rotation of both gears with their sidebands, the mesh."""
+KINDS = {"other": "0.75", "wheel": "#0072b2", "pinion": "#009e73", "both": "#cc79a7", "mesh": "#d55e00"}
+"""Colours of orders, from the lowest layer up: others, of the rotation of each gear with their sidebands, those that
+belong to both gears, the mesh."""
 MOST_ORDERS = 3.5
 """Mesh orders that are shown."""
 BESIDE_MESH = 0.3
@@ -104,9 +105,10 @@ def plot_revolution_spectrum(revolution: OverTurns, torque: int | None = None) -
     groups = np.array([_group(one) for one in kind.tolist()])
     labels = {"mesh": "mesh orders", "wheel": "rotation of the wheel and its sidebands"}
     labels |= {"pinion": "rotation of the pinion and its sidebands", "other": "other orders"}
+    labels |= {"both": "orders of both gears and their sidebands"}
     rigid = np.maximum(revolution.spectrum(rigid=True).amplitude[shown], LEAST_SHOWN)
     amplitude = np.maximum(amplitude, LEAST_SHOWN)
-    for (group, colour), marker in zip(KINDS.items(), ".s^o", strict=True):
+    for (group, colour), marker in zip(KINDS.items(), ".s^Do", strict=True):
         rows = groups == group
         if not rows.any():
             continue
@@ -134,9 +136,9 @@ def plot_revolution_spectrum(revolution: OverTurns, torque: int | None = None) -
 
 def _group(kind: str) -> str:
     """Group of the colours that a kind of order belongs to."""
-    last = kind.split(" ")
-    if last[-1] in GEARS or last[0] in GEARS:
-        return last[-1] if last[-1] in GEARS else last[0]
+    gears = [word for word in kind.split() if word in GEARS]
+    if gears:
+        return gears[0] if len(gears) == 1 else "both"
     return "mesh" if kind else "other"
 
 

@@ -24,6 +24,8 @@ LEFT_OUT = re.compile(r'<metadata>.*?</metadata>|<style[^>]*>.*?</style>|<!--.*?
 """Of an SVG: its metadata; its style, which would hold for the whole page, and which the page has itself; the ids of
 images, which nothing uses, and which are alike for equal images."""
 SIZE = re.compile(r'<svg [^>]*?viewBox="0 0 ([\d.]+) ([\d.]+)"[^>]*>')
+MICRO = re.compile(r"\bum\b")
+"""Unit of lengths as files and screens have it."""
 UNIT = re.compile(r"\[[^\]]*\]")
 MISSING = (
     "report: needs the package jinja2; 'pip install jinja2' gets it, as does installing loaded_tca with its extra "
@@ -174,8 +176,8 @@ def require_jinja2() -> Any:
 
 
 def _whole_units(label: str) -> str:
-    """A label whose unit in brackets stays in one line."""
-    return UNIT.sub(lambda unit: unit[0].replace(" ", "\N{NO-BREAK SPACE}"), label)
+    """A label whose unit in brackets stays in one line, with µm for the um of files and screens."""
+    return UNIT.sub(lambda unit: MICRO.sub("µm", unit[0].replace(" ", "\N{NO-BREAK SPACE}")), label)
 
 
 def _code(text: str) -> Any:

@@ -27,7 +27,7 @@ from loaded_tca.results.figure import NO_ESTIMATE, Figures, in_percent, labelled
 from loaded_tca.results.figures import FIGURES, declared
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.numbers import index_or_largest
-from loaded_tca.results.summary import known_rows, limits_of, shown
+from loaded_tca.results.summary import known_rows, shown
 from loaded_tca.scene import Scene
 from loaded_tca.stages import Stage, StageResult
 from loaded_tca.tribology import tribology_of
@@ -74,7 +74,7 @@ def result_tables(result: MeshCycle) -> dict[str, Any]:
         **scene_content(result.scene),
         "load_cases": _load_cases(result, figures),
         "key_figures": [key_figures_table(result, part, figures[part]) for part in parts_of(figures, MOST_TORQUES)],
-        "limits": [*limits_of(figures), *result.findings()],
+        "limits": [*result.notes(), *result.findings()],
         "accuracy": [_accuracy(result, part, figures) for part in parts_of(figures, MOST_TORQUES)],
         "warnings": None if result.warnings is None else explained(result.warnings),
     }

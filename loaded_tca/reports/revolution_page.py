@@ -147,15 +147,22 @@ def order_in_words(kind: str) -> str:
     ('mesh order 1', 'mesh order 2 - 1 wheel order')
     >>> order_in_words("mesh 1 +3 pinion"), order_in_words("pinion 3"), order_in_words("")
     ('mesh order 1 + 3 pinion orders', 'pinion order 3', 'order of neither gear')
+    >>> order_in_words("pinion 1 = wheel 2"), order_in_words("mesh 1 -1 pinion = -2 wheel")
+    ('pinion order 1 = wheel order 2', 'mesh order 1 - 1 pinion order = - 2 wheel orders')
     """
     if not kind:
         return "order of neither gear"
-    name, number, *sideband = kind.split()
+    first, *others = kind.split(" = ")
+    name, number, *sideband = first.split()
     words = f"{name} order {number}"
-    if sideband:
-        apart, gear = int(sideband[0]), sideband[1]
-        words += f" {'+' if apart > 0 else '-'} {abs(apart)} {gear} order{'s' * (abs(apart) > 1)}"
-    return words
+    if not sideband:
+        return " = ".join([words, *map(order_in_words, others)])
+    return f"{words} {' = '.join(_sideband(*one.split()) for one in (' '.join(sideband), *others))}"
+
+
+def _sideband(apart: str, gear: str) -> str:
+    """How many orders of a gear a sideband lies beside a mesh order."""
+    return f"{apart[0]} {apart[1:]} {gear} order{'s' * (abs(int(apart)) > 1)}"
 
 
 def deviation_tables(scene: Scene, of_what: str = "") -> Iterator[Table]:

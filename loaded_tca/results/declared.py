@@ -23,8 +23,9 @@ OVER_CYCLE = (*CYCLE, "gear")
 
 ENGINEERS_UNITS = {"rad": "arcsec", "N mm": "Nm"}
 """Unit of a result -> ending of its column, where tables have another unit; angles by their name are in degrees."""
-ABOUT = ("version", "date", "warnings")
-"""Attributes of a dataset: version of the package, date and accuracy warnings of the analysis, a line each."""
+ABOUT = ("version", "date", "warnings", "left_out")
+"""Attributes of a dataset: version of the package, date and accuracy warnings of the analysis, a line each; of a half
+of a double helical pair a sentence on what its numbers leave out."""
 
 
 class Asked(NamedTuple):
@@ -241,6 +242,11 @@ class Numbers:
         """Sentences of the accuracy warnings of the analysis; None if the file of the result does not have them."""
         sentences = self.dataset.attrs.get("warnings")
         return None if sentences is None else tuple(str(sentences).splitlines())
+
+    @property
+    def left_out(self) -> str:
+        """Sentence on what the numbers of a half of a double helical pair leave out; empty: of a whole pair."""
+        return str(self.dataset.attrs.get("left_out", ""))
 
 
 @dataclass(frozen=True, eq=False)

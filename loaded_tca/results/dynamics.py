@@ -6,6 +6,7 @@ Stiffness, transmission error and pairs in contact over one pitch or over the pi
 from __future__ import annotations
 
 import math
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -60,7 +61,7 @@ PARTS: dict[str, Part] = {
         (ORDER,),
         "",
         "mesh 1: first order of the tooth mesh; mesh 1 -2 wheel: its sideband two orders of the wheel below; "
-        "wheel 3: third order of rotation of the wheel; empty: none of these",
+        "wheel 3: third order of rotation of the wheel; pinion 1 = wheel 2: of both gears; empty: none of these",
     ),
     "loaded_contact_ratio": ((TORQUE,), "1", "tooth pairs under load, mean over the pitches"),
     "unloaded_transmission_error_m": ((PHASE,), "m", "transmission error without load, times r_b2"),
@@ -80,6 +81,8 @@ PARTS: dict[str, Part] = {
 """Name in the dataset of ``dynamics_of`` and in its tables -> dimensions, unit, long name."""
 COORDINATES = (TORQUE, PHASE, "pinion_angle_rad", ORDER)
 
+LINE = 118
+"""Characters of a line of the conventions."""
 CONVENTIONS = """\
 Fourier series: x(phi1) = amplitude_0 + sum over k of amplitude_k cos(k z1 phi1 + phase_k)
 The unmodified, aligned pair touches at the pitch point of mid-face at phi1 = phi2 = 0; both angles grow in the motion.
@@ -189,7 +192,9 @@ def _attributes_of(result: CycleNumbers | Revolution, caveat: str) -> dict[str, 
     driving, analysis = "pinion" if result.gear_pair.driving > 0 else "wheel", result.scene.analysis
     held = ", from bores that are held rigid" if analysis.teeth_bend else ""
     supported = ON_SUPPORTS if result.scene.is_supported else ""
-    lines = filter(None, (CONVENTIONS, f"The {driving} drives; {analysis.bending}{held}.", supported, caveat))
+    of_half = [f"Only {line}." for line in filter(None, [result.left_out])]
+    caveats = *textwrap.wrap("".join(of_half), LINE), *filter(None, (supported, caveat))
+    lines = CONVENTIONS, f"The {driving} drives; {analysis.bending}{held}.", *caveats
     return {"title": result.scene.title, "version": result.version, "conventions": "\n".join(lines)}
 
 

@@ -328,7 +328,8 @@ class MeshCycle(CycleNumbers, AnalysisResult):
         """Return the key figures in the engineer's units, one column per torque, and the warnings of the analysis."""
         figures = self.key_figures()
         more = [row for row, name in zip(self.rows(figures), self.figures, strict=True) if name not in self.FIGURES]
-        return summary_text(self.title or self.TITLE, self.scope, figures, self.warnings or (), self.findings(), more)
+        about = self.title or self.TITLE, self.scope
+        return summary_text(*about, figures, self.warnings or (), self.findings(), more, super().notes())
 
     def sentences(self) -> dict[str, tuple[str, ...]]:
         """What limits the figures, what edges do to them, and accuracy warnings."""
@@ -336,7 +337,7 @@ class MeshCycle(CycleNumbers, AnalysisResult):
 
     def notes(self) -> tuple[str, ...]:
         """Sentences on what limits the figures; none for an ordinary point contact."""
-        return tuple(limits_of(self.key_figures()))
+        return (*super().notes(), *limits_of(self.key_figures()))
 
     def tables(self) -> dict[str, Callable[[], Columns]]:
         """Tables of the result by their names; that of contacts where tooth pairs share the load."""

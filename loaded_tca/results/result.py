@@ -141,7 +141,7 @@ class Result(InNotebooks, Numbers, ABC):
 
     def notes(self) -> tuple[str, ...]:
         """Sentences on what limits the figures."""
-        return ()
+        return (self.left_out,) if self.left_out else ()
 
     def summary(self) -> str:
         """Return the figures in the engineer's units, a column for each torque, notes, and accuracy warnings."""

@@ -91,7 +91,8 @@ class Spectrum(NamedTuple):
         Of the transmission error at the base circle of the wheel.
     kind : (k,) array of str
         "mesh 1", "mesh 2", ...; "mesh 1 -2 wheel", "mesh 1 +1 pinion": sidebands; "wheel 1", "pinion 3": orders of
-        rotation; "" where an order is neither.
+        rotation; "pinion 1 = wheel 2", "mesh 1 -1 pinion = -2 wheel": of both gears; "" where an order is neither. An
+        order of both gears of which one alone deviates has the name of that gear.
     """
 
     order: Array
@@ -160,7 +161,9 @@ FIGURES: dict[str, Figure] = {
     "tooth_to_tooth_single_flank_deviation_um": _deviation("tooth_to_tooth_deviation"),
     "rigid_total_single_flank_deviation_um": _deviation("total_deviation", rigid=True),
     "rigid_tooth_to_tooth_single_flank_deviation_um": _deviation("tooth_to_tooth_deviation", rigid=True),
-    "first_mesh_order_um": Figure(of=lambda under: under.amplitudes.get("mesh 1", math.nan)),
+    "first_mesh_order_um": Figure(
+        of=lambda under: under.result.order_amplitude(under.result.spectrum(under.row), "mesh")
+    ),
     "largest_sideband_um": Figure(
         of=lambda under: max(
             (size for kind, size in under.amplitudes.items() if kind.startswith("mesh 1 ")), default=math.nan
@@ -241,23 +244,26 @@ class OverTurns(AnalysisResult):
         if cycles % self.pitches == 0:
             return f"mesh {cycles // self.pitches}"
         mesh = round(cycles / self.pitches)
-        offsets = {}
-        for name, teeth in zip(GEARS, self.teeth, strict=True):
-            turns, rest = divmod((cycles - mesh * self.pitches) * teeth, self.pitches)
-            if rest == 0 and abs(turns) <= (SIDEBANDS if mesh else teeth):
-                offsets[name] = turns
-        if not offsets:
-            return self._turns(cycles)
-        name = min(offsets, key=lambda one: abs(offsets[one]))
-        return f"mesh {mesh} {offsets[name]:+d} {name}" if mesh else f"{name} {offsets[name]}"
+        beside = self._turns(cycles - mesh * self.pitches) if mesh else {}
+        if any(abs(turns) <= SIDEBANDS for turns in beside.values()):
+            return f"mesh {mesh} " + " = ".join(f"{turns:+d} {gear}" for gear, turns in beside.items())
+        return " = ".join(f"{gear} {turns}" for gear, turns in self._turns(cycles).items())
 
-    def _turns(self, cycles: int) -> str:
-        """Order of rotation of the wheel, else of the pinion; nothing where it is whole of neither."""
-        for name, teeth in reversed([*zip(GEARS, self.teeth, strict=True)]):
+    def _turns(self, cycles: int) -> dict[str, int]:
+        """Orders of rotation that have so many cycles in the revolution: of gears that deviate, if any has one."""
+        orders: dict[str, int] = {}
+        for gear, teeth in zip(GEARS, self.teeth, strict=True):
             turns, rest = divmod(cycles * teeth, self.pitches)
             if rest == 0:
-                return f"{name} {turns}"
-        return ""
+                orders[gear] = turns
+        deviating = {gear: orders[gear] for gear in orders if getattr(self.scene, gear).teeth_differ}
+        return deviating or orders
+
+    def order_amplitude(self, spectrum: Spectrum, of: str, order: int = 1) -> float:
+        """Amplitude of an order of rotation of the pinion or of the wheel, or of the tooth mesh; NaN: there is none."""
+        per_turn = (*self.teeth, 1)[(*GEARS, "mesh").index(of)]
+        cycles, rest = divmod(order * self.pitches, per_turn)
+        return float(spectrum.amplitude[cycles - 1]) if rest == 0 and cycles <= len(spectrum.amplitude) else math.nan
 
     def leaking_orders(self) -> dict[str, Array]:
         """Orders of rotation of each gear that deviates, and of which the revolution is no whole turn.

@@ -79,6 +79,7 @@ def summary_text(
     warnings: Sequence[str] = (),
     findings: Sequence[str] = (),
     more: Sequence[Sequence[str]] = (),
+    notes: Sequence[str] = (),
 ) -> str:
     """Return the summary of a mesh cycle: one line per figure with a column per torque, notes, findings, warnings.
 
@@ -92,6 +93,8 @@ def summary_text(
         Accuracy warnings of the analysis, and what ``MeshCycle.findings`` says.
     more : sequence of (str, ...)
         Further rows.
+    notes : sequence of str
+        Notes before those on the figures.
     """
     edge = kind_of_edge([entry for entry in figures if not math.isnan(entry.get("edge_pressure_MPa", math.nan))])
     rows = [
@@ -102,7 +105,7 @@ def summary_text(
         for label, names in known_rows(figures)
     ]
     beside = WHERE_REASONS_ARE if any(reasons_beside(*figures)) else ""
-    sentences = {"note": [*limits_of(figures)], "finding": findings, "warning": warnings}
+    sentences = {"note": [*notes, *limits_of(figures)], "finding": findings, "warning": warnings}
     return summary_of(title, scope, [*rows, *more], sentences, beside)
 
 

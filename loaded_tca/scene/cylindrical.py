@@ -30,7 +30,7 @@ from loaded_tca.scene.rows import Label, fixed
 from loaded_tca.scene.section import Rule, Section, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, AMOUNT_um, DIAMETER_mm, ERROR_deg, ERROR_mm, Pair, SLOPE_um, below
 from loaded_tca.scene.standards import ContactStandard, contact_standard, slope_tolerances
-from loaded_tca.scene.thickness import as_measured, odd_backlash, odd_thickness, thickness_rows
+from loaded_tca.scene.thickness import gear_of, odd_backlash, odd_thickness, thickness_rows
 from loaded_tca.scene.tools import (
     ADDENDUM,
     DEDENDUM,
@@ -197,8 +197,8 @@ class CylindricalScene(BlankScene):
         """The macro geometry, which every number of the standards asks for again."""
         of_pinion, of_wheel = self._gear_values((CylindricalGear, CylindricalGear))
         with self._following_shift_named():
-            pinion = as_measured(CylindricalGear(**of_pinion), self.pinion)
-            wheel = as_measured(CylindricalGear(**of_wheel), self.wheel)
+            pinion = gear_of(of_pinion, self.pinion)
+            wheel = gear_of(of_wheel, self.wheel)
         return CylindricalMesh(pinion, wheel, self.geometry.centre_distance_mm, self.mounting.axial_offset_mm)
 
     @cached_property

@@ -24,7 +24,7 @@ from loaded_tca.scene.parse import variant
 from loaded_tca.scene.rows import Label, fixed
 from loaded_tca.scene.section import Rule, Section, rule, subsection
 from loaded_tca.scene.sections import DIAMETER_mm, below
-from loaded_tca.scene.thickness import as_measured, thickness_rows
+from loaded_tca.scene.thickness import as_measured, gear_of, thickness_rows
 from loaded_tca.scene.tools import SHORTENED_ONCE, CutSection, chamfer_rows, rack_rows
 
 
@@ -176,7 +176,7 @@ class InternalScene(CylindricalScene):
         cutter = self.wheel.cutter
         of_ring["cutter"] = None if cutter is None else PinionCutter(**parameters_of(PinionCutter, cutter))
         with self._following_shift_named():
-            pinion = as_measured(CylindricalGear(**of_pinion), self.pinion)
+            pinion = gear_of(of_pinion, self.pinion)
             ring = as_measured(RingGear(**of_ring), self.wheel)
         return InternalMesh(pinion, ring, self.geometry.centre_distance_mm, self.mounting.axial_offset_mm)
 

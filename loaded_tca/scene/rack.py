@@ -27,7 +27,7 @@ from loaded_tca.scene.pitch import REVOLUTION_RULES
 from loaded_tca.scene.rows import Label, fixed
 from loaded_tca.scene.section import Rule, refusal, rule, subsection
 from loaded_tca.scene.sections import SLOPE_um
-from loaded_tca.scene.thickness import as_measured, odd_thickness
+from loaded_tca.scene.thickness import gear_of, odd_thickness
 from loaded_tca.scene.tools import odd_tip
 
 LENGTH_mm = above_zero(100000.0)
@@ -181,11 +181,13 @@ class RackScene(CylindricalScene):
         """The pinion; where the distance is given and its profile shift is not, with what leaves no backlash."""
         values = parameters_of(CylindricalGear, self.geometry, self.pinion)
         values["helix_angle"] *= self.hand_signs[0]
-        values["profile_shift"] = shift = self.pinion.profile_shift or 0.0
-        pinion, distance = CylindricalGear(**values, name="pinion"), self.geometry.distance_mm
+        values["profile_shift"] = self.pinion.profile_shift or 0.0
+        distance = self.geometry.distance_mm
         if distance is not None and self.pinion.profile_shift is None:
-            shift = (distance - pinion.reference_radius) / pinion.normal_module
-        return as_measured(replace(pinion, profile_shift=shift), self.pinion)
+            module = self.geometry.normal_module_mm
+            reference_radius = 0.5 * self.pinion.teeth * module / math.cos(values["helix_angle"])
+            values["profile_shift"] = (distance - reference_radius) / module
+        return gear_of({**values, "name": "pinion"}, self.pinion)
 
     @cached_property
     @named_by_keys

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import combinations
-from typing import TYPE_CHECKING, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import GEARS
@@ -45,6 +45,8 @@ THICKNESS = (
     "pin_measurement_mm",
 )
 """Keys of which one gives the tooth thickness."""
+MEASURES = THICKNESS[1:]
+"""Those of which the allowance follows by way of a gear with nominal thickness."""
 
 
 def needs(key: str, other: str, *, back: bool = False) -> Rule:
@@ -114,13 +116,29 @@ class MeasuredSection(BlankGearSection):
 GearType = TypeVar("GearType", CylindricalGear, RingGear)
 
 
-def as_measured(gear: GearType, own: MeasuredSection) -> GearType:
-    """Gear with the thickness of its teeth that is given, or that a span, balls or pins tell, if they do."""
+def gear_of(values: Mapping[str, Any], own: MeasuredSection) -> CylindricalGear:
+    """External gear of the keys of its section; one with measured teeth has its root and bore checked as measured.
+
+    Thickness is measured on flanks, wherever the root lies. The root diameter of a gear asks for a dedendum that
+    depends on the thickness, so that a gear of nominal thickness would need another one.
+    """
+    if all(getattr(own, key) is None for key in MEASURES):
+        return CylindricalGear(**values)
+    inside = {key: values[key] for key in ("root_diameter", "bore_diameter") if key in values}
+    nominal = CylindricalGear(**{key: value for key, value in values.items() if key not in inside})
+    return as_measured(nominal, own, **inside)
+
+
+def as_measured(gear: GearType, own: MeasuredSection, **inside: Any) -> GearType:
+    """Gear with the thickness of its teeth that is given, or that a span, balls or pins tell, if they do.
+
+    ``inside``: fields that this gear has, and the one with nominal thickness does not.
+    """
     if own.normal_tooth_thickness_mm is not None:
-        return replace(gear, thickness_allowance=allowance_of_thickness(gear, own.normal_tooth_thickness_mm))
+        return replace(gear, thickness_allowance=allowance_of_thickness(gear, own.normal_tooth_thickness_mm), **inside)
     if own.span_measurement_mm is not None:
         teeth = own.span_teeth or gear.span_teeth
-        measured = replace(gear, thickness_allowance=allowance_of_span(gear, own.span_measurement_mm, teeth))
+        measured = replace(gear, thickness_allowance=allowance_of_span(gear, own.span_measurement_mm, teeth), **inside)
         measured.span_measurement(teeth)  # refuses a span that touches no flank
         return measured
     for measurement, diameter, allowance_of, measured_over in (
@@ -128,7 +146,7 @@ def as_measured(gear: GearType, own: MeasuredSection) -> GearType:
         (own.pin_measurement_mm, own.pin_diameter_mm, allowance_of_pins, MeasuredGear.pin_measurement),
     ):
         if measurement is not None and diameter is not None:
-            measured = replace(gear, thickness_allowance=allowance_of(gear, measurement, diameter))
+            measured = replace(gear, thickness_allowance=allowance_of(gear, measurement, diameter), **inside)
             measured_over(measured, diameter)  # refuses balls and pins that touch no flank
             return measured
     return gear

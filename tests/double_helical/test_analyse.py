@@ -317,3 +317,12 @@ def test_a_sentence_without_a_torque_says_nothing_of_torques():
     assert analyses._of_half(sentence) == sentence
     placed = at_places("the contact is wide", ["300 N m, pinion angle 0 deg, tooth pair 0"], 4)
     assert analyses._of_half(placed) == f"{placed[:-1]}; N m: the torque of the half)"
+
+
+def test_halves_say_what_their_numbers_leave_out():
+    result, _ = samples.analysed()
+    for half, cycle in zip("ab", result.halves, strict=True):
+        assert cycle.left_out.startswith(f"half {half} of a double helical pair: ")
+        assert cycle.notes()[0] == cycle.left_out
+        assert f"note: {cycle.left_out}" in cycle.summary()
+    assert result.left_out == ""

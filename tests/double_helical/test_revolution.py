@@ -109,7 +109,11 @@ def test_command_writes_both_halves_with_orders_of_the_shuttling(wobbling, tmp_p
     monkeypatch.setattr("loaded_tca.double_helical.analyse_double_helical_revolution", lambda *_, **__: wobbling)
     monkeypatch.setattr("loaded_tca.plots.png_of", lambda _: b"")
     (tmp_path / "scene.toml").write_text(wobbling.scene.to_toml())
+    stale = tmp_path / "out" / "half_b_revolution" / "dynamics_orders.csv"
+    stale.parent.mkdir(parents=True)
+    stale.write_bytes(b"of an older revolution")
     assert main(["revolution", str(tmp_path / "scene.toml"), "--out", str(tmp_path / "out")]) == 0
+    assert not stale.parent.exists()
     summary = capsys.readouterr().out
     assert "axial motion towards half a, mean" in summary
     assert "axial motion: amplitude of order pinion 1 [um]" in summary
@@ -133,6 +137,32 @@ def test_command_writes_both_halves_with_orders_of_the_shuttling(wobbling, tmp_p
     assert "over a whole revolution of a double helical pair" in (tmp_path / "out" / "report.html").read_text()
 
 
+@pytest.mark.parametrize("floating", ["pinion", "none"])
+def test_half_says_what_its_numbers_leave_out(floating, tmp_path):
+    """In its tables for dynamics, its summary and its file: of a floating gear the axial motion, and the other half."""
+    revolution = analyse_revolution(scene_with(**{"wheel.apex_runout_um": 8.0, "pair.floating": floating}))
+    half = revolution.half_b
+    of_half = half.to_dynamics().attrs["conventions"].replace("\n", " ")
+    assert "Only half b of a double helical pair: " in of_half
+    assert "stiffness is that of this half alone; the result of the pair has transmission error" in of_half
+    without = "the transmission error is that of gears held along their axes, without the axial motion of the pinion"
+    assert (without in of_half) == (floating == "pinion")
+    assert f"note: {half.left_out}" in half.summary()
+    assert "double helical" not in analyse_revolution(half.scene).to_dynamics().attrs["conventions"]  # a pair by itself
+    half.save(tmp_path / "half.nc")
+    assert type(half).load(tmp_path / "half.nc").left_out == half.left_out
+
+
+def test_transmission_error_of_a_floating_pair_has_no_apex_runout_which_its_halves_have():
+    """The runout sets one half back and the other one forward by R/2 tan(beta_b); the pair moves along the axis."""
+    one = {"revolution.pitches": 1, "wheel.apex_runout_um": 20.0}
+    pair = analyse_revolution(scene_with(**one))
+    halves = [half.error_um(0)[0] for half in pair.halves]
+    back = 20.0 * abs(pair.scene.axial_rate)  # of both halves together, reduced by the teeth beside tooth 0
+    assert abs(halves[0] - halves[1]) == pytest.approx(back, rel=0.05)
+    assert pair.error_um(0)[0] == pytest.approx(np.mean(halves), abs=0.01 * back)
+
+
 def test_a_revolution_under_several_torques_comes_back_from_its_files(tmp_path):
     changes = {"revolution.pitches": 1, "analysis.torques_Nm": [400.0, 1600.0]}
     revolution = analyse_revolution(scene_with(**OPPOSED, **changes))
@@ -154,9 +184,8 @@ def test_orders_of_the_shuttling_are_those_of_its_curve(wobbling):
     spectrum = whole.axial_spectrum(0)
     assert_allclose(spectrum.amplitude[spectrum.order == 1.0], 10.0)
     figures = whole.key_figures()[0]
-    amplitudes = np.array([figures[f"axial_motion_{gear}_1_um"] for gear in ("pinion", "wheel")])
-    assert amplitudes[np.isfinite(amplitudes)] == pytest.approx(10.0)  # gears of equal teeth turn with one order
-    assert np.isfinite(amplitudes).sum() == 1
+    amplitudes = [figures[f"axial_motion_{gear}_1_um"] for gear in ("pinion", "wheel")]
+    assert_allclose(amplitudes, 10.0)  # of gears of equal teeth the first order of either is that of the other one
 
 
 def test_orders_that_the_positions_do_not_resolve_have_no_amplitude(wobbling):

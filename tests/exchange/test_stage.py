@@ -347,6 +347,19 @@ def test_root_diameter_of_a_gear_whose_tool_has_no_dedendum_is_taken() -> None:
     assert not any("21" in one and "root_diameter" in one for one in imported.not_taken)
 
 
+def test_root_diameter_that_contradicts_the_tool_is_named_with_what_is_taken() -> None:
+    """By the tool of pinion 21, h_fP = 1.4: d_f = d - 2 m_n (1.4 - x)."""
+    pinion = scene_of().mesh().pinion
+    root = 2.0 * pinion.reference_radius - 2.0 * pinion.normal_module * (1.4 - pinion.generating_profile_shift)
+    told = f"the addendum of the tool is taken, which cuts a root diameter of {root:.6g} mm; root_diameter, 44 mm, "
+    imported = import_stage(changed(attributes={"21.root_diameter": (44.0, "mm")}), "10")
+    assert imported.scene == scene_of()
+    assert [told in note for note in imported.read_as if "root_diameter" in note] == [True]
+    for alike in (root, root + 0.01):
+        agrees = import_stage(changed(attributes={"21.root_diameter": (alike, "mm")}), "10")
+        assert not any("root_diameter" in note for note in agrees.read_as)
+
+
 RING_TOOLS = {
     "that of its cutter": ({"85.addendum_coefficient_reference_profile": (1.4, "none")}, 1.4, []),
     "that of the pinion's tool": (

@@ -207,10 +207,12 @@ def test_what_a_revolution_does_not_have_is_refused(tmp_path):
 
 def test_double_helical_revolution_has_both_halves_and_the_orders_of_the_motion(written):
     whole = shuttling(analyse_revolution(scene_with(**OPPOSED)))
+    whole = replace(whole, scene=whole.scene.with_changes({"wheel.apex_runout_um": 12.0}))
     page = written(whole)
     rows = {row[0]: row[1:] for table in page.tables for row in table}
+    assert rows["apex runout, peak to peak [µm]"] == ["0", "12"]
     assert numbers(rows["axial motion: amplitude of order pinion 1 [µm]"]) == [10.0]
-    assert rows["pinion order 1"] == ["1", "1", "10"]  # of gears of equal teeth; of the motion alone
+    assert rows["wheel order 1"] == ["1", "1", "10"]  # of gears of equal teeth the one that deviates; the motion alone
     assert rows["runout, twice the eccentricity [µm]"] == ["0.00", "8.00"]
     assert rows["azimuth of the eccentricity [deg]"] == ["0", "180"]  # of half b, below half a
     assert "wheel of half b" in page.words

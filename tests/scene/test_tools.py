@@ -58,6 +58,24 @@ def test_root_diameter_of_a_drawing_sets_the_dedendum():
     assert measured.mesh().pinion.generating_profile_shift < pinion.profile_shift - 0.01
 
 
+def test_root_diameter_of_thin_teeth_that_are_measured_is_that_of_the_measured_gear():
+    """A rack with h_fP = 2 at x_E = x - 0.6/(2 m_n tan(alpha_n)): full thickness would need 2.27, beyond 2.16."""
+    allowance, dedendum = -600.0, 2.0
+    thin = scene(pinion__dedendum_coefficient=dedendum, pinion__thickness_allowance_um=allowance).mesh().pinion
+    shift = thin.profile_shift + 1e-3 * allowance / (2.0 * thin.normal_module * tan(thin.pressure_angle))
+    root = 2.0 * (thin.reference_radius - thin.normal_module * (dedendum - shift))
+    measures = {
+        "span_measurement_mm": thin.span_measurement(5),
+        "normal_tooth_thickness_mm": thin.normal_tooth_thickness,
+    }
+    for key, measure in measures.items():
+        pinion = scene(pinion__root_diameter_mm=root, **{f"pinion__{key}": measure}).mesh().pinion
+        assert_allclose(pinion.dedendum_coefficient, dedendum, rtol=1e-9)  # a measure that is inverted
+        assert_allclose(2.0 * pinion.root_radius, root, rtol=ROUNDING)
+    with pytest.raises(InputError, match=r"root_diameter_mm: .* asks for dedendum_coefficient = 2\.2, which"):
+        scene(pinion__root_diameter_mm=root - 0.4 * thin.normal_module, **{f"pinion__{key}": measure}).mesh()
+
+
 def test_tool_of_the_pair_given_for_each_gear_is_the_same_pair():
     """To the bit, with the stiffness of ISO 6336-1, which takes the mean of both racks."""
     each = {f"{gear}__dedendum_coefficient": 1.3 for gear in ("pinion", "wheel")}
