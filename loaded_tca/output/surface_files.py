@@ -122,7 +122,8 @@ def _stl(mesh: TriangleMesh, title: str) -> bytes:
     if mesh.size:
         away, size = float(np.abs(mesh.vertices).max()), float(np.ptp(mesh.vertices, axis=0).max())
         far = (
-            f"the surface of {plain(size)} mm lies {plain(away)} mm from the origin; allowed up to {FARTHEST:g} sizes: "
+            f"the surface of {plain(size)} mm lies {plain(away)} mm from the origin; allowed up to {plain(FARTHEST)} "
+            "sizes: "
         )
         require(
             (away <= FARTHEST * size, f"vertices: {far}coordinates of STL files have seven digits; move the surface")

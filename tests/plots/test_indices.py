@@ -2,6 +2,7 @@
 
 from functools import partial
 from inspect import signature
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ CALLED_WITH = {
 }
 OWN = {
     "plot_over_flank": lambda: [known(CALLED_WITH["result"]()[0]), "pressure"],
+    "plot_half_envelope": lambda: [SimpleNamespace(torque=np.ones(2)), 0],  # no more is looked at before
     "plot_all": lambda: [CALLED_WITH["result"]()[0], "nowhere"],
     "plot_face_load_on_supports": lambda: CALLED_WITH["result"]() * 2,
     "plot_first_order_scatter": lambda: [test_first_order.found(), test_first_order.study()],
