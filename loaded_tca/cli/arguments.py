@@ -145,7 +145,9 @@ STUDY = """files in DIR:
   shortfall.csv             for scenes with strengths: probability of safeties below the required ones
   study_*.png               pictures, depending on what varies
   study.rows.jsonl          the variants that are done; the same command continues from there
-  study_maps/N.nc           whole results of the variants asked for by --keep-maps, as of 'loaded-tca run'"""
+  study_maps/N.nc           whole results of the variants asked for by --keep-maps, as of 'loaded-tca run'; of a study
+                            that has changed they move to the new numbers of their variants, others to
+                            study_maps/others/"""
 REPORT = """One HTML file that needs nothing else: what was asked, geometry, load cases, key figures, their accuracy,
 pictures, accuracy warnings with what to do, and the scene file; for a stage its phases, shares and orders; for a whole
 revolution its largest orders and the deviations of the teeth; for a study what varies, the ranking, best and worst
