@@ -135,15 +135,23 @@ def formatted(style: str, *values: float) -> list[str]:
     return [f"{value:{style}}" for value in values]
 
 
-def machine(numpy: bool = False) -> str:
-    """Processor, cores and Python of this machine, of NumPy if asked for, the version of the package, and the day."""
+def machine(numpy: bool = False, before: Path | None = None) -> str:
+    """Processor, cores and Python of this machine, of NumPy if asked for, the version of the package, and the day.
+
+    ``before``: a checkout that is measured beside this one; hash and day of its revision follow.
+    """
     model = platform.processor()
     if Path("/proc/cpuinfo").exists():
         entries = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
         model = next((entry.split(":")[1].strip() for entry in entries if entry.startswith("model name")), model)
     words = f"{model}, {os.cpu_count()} cores, Python {platform.python_version()}"
     words += f", NumPy {np.__version__}" if numpy else ""
-    return f"{words}, loaded_tca {loaded_tca.__version__}, {date.today():%-d %B %Y}"
+    words += f", loaded_tca {loaded_tca.__version__}, {date.today():%-d %B %Y}"
+    if before is None:
+        return words
+    asked = ["git", "-C", str(before), "log", "-1", "--format=%h of %as"]
+    revision = subprocess.run(asked, check=True, capture_output=True, text=True).stdout.strip()
+    return f"{words}; before: revision {revision}"
 
 
 def timed(

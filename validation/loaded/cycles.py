@@ -15,7 +15,6 @@ from __future__ import annotations
 import cProfile
 import pstats
 import statistics
-import subprocess
 import time
 import warnings
 from functools import partial
@@ -101,12 +100,6 @@ def _parts_of(function: Function, stats: dict[Function, Any], depth: int = 0) ->
     return found
 
 
-def revision(tree: Path) -> str:
-    """Short hash and day of what a checkout is at."""
-    asked = ["git", "-C", str(tree), "log", "-1", "--format=%h of %as"]
-    return subprocess.run(asked, check=True, capture_output=True, text=True).stdout.strip()
-
-
 def page(before: Path | None) -> Page:
     """Measure every scene and setting, beside another checkout if there is one."""
     trees = {"now": ROOT} if before is None else {"before": before.resolve(), "now": ROOT}
@@ -136,7 +129,7 @@ def page(before: Path | None) -> Page:
         "the process with all its libraries. Shares are those of a profile, which overrates Python's calls against",
         "array passes and transforms.",
         "",
-        f"{machine()}." if before is None else f"{machine()}; before: revision {revision(before)}.",
+        f"{machine(before=before)}.",
         "",
         table(["scene", "setting", *heads, "peak memory [MiB]", *PARTS, REST], rows, SPACED),
     ]

@@ -111,7 +111,7 @@ def page(before: Path | None) -> Page:
         f"the peak: against {FINEST[0]} x {FINEST[1]} cells. Two grids are solved: the last has twice the cells of the",
         "first along both axes, and their difference estimates the error.",
         "",
-        f"{machine()}.",
+        f"{machine(before=before)}.",
         "",
         table(["scene", *heads, *["ratio", "ratio of gaps"] * (len(trees) == 2)], rows, SPACED),
     ]
