@@ -4058,8 +4058,8 @@ FAULTS = (
     Fault(
         "whole revolution: a report, tables and pictures of an older one stay beside the numbers of a new one",
         "cli/commands.py",
-        "_new(result, directory, revolution_figures(result), files_beside_revolution())",
-        "_new(result, directory, revolution_figures(result), set())",
+        "_new(result, directory, figures, files_beside_revolution())",
+        "_new(result, directory, figures, set())",
         "test_cli_revolution.py::test_revolution_is_written_with_its_tables_and_pictures",
     ),
     Fault(

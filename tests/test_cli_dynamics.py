@@ -78,6 +78,7 @@ def test_tables_of_a_revolution_are_those_of_its_curves_and_its_spectrum(run, tm
     comments, orders = table("turn/dynamics_orders.csv")
     order, amplitude, kind = turn.spectrum(1)
     rows = (orders["pinion_torque_Nm"] == 60.0) & (orders["order"] > 0.0)
+    # atol: m, of orders that are not there, as rounding leaves them of a curve of some um
     assert_allclose(orders["transmission_error_amplitude_m"][rows], 1e-6 * amplitude, rtol=1e-9, atol=1e-18)
     assert_allclose(orders["order_of_wheel"][rows], order, rtol=1e-11)
     assert orders["kind"][rows].tolist() == kind.tolist()

@@ -170,6 +170,10 @@ def _run_double_helical(scene: DoubleHelicalScene, directory: Path) -> None:
 
 def revolution(options: argparse.Namespace) -> None:
     """Analyse a whole revolution, write everything into a directory, and show the summary."""
+    from loaded_tca.double_helical import DoubleHelicalRevolution
+    from loaded_tca.double_helical.result import PAIR_REVOLUTION_FILE
+    from loaded_tca.double_helical.revolution import expected_halves_revolution_effort
+    from loaded_tca.plots import halves_revolution_figures
     from loaded_tca.plots.revolution import revolution_figures
     from loaded_tca.results.revolution import REVOLUTION_FILE
     from loaded_tca.revolution import analyse_revolution, expected_revolution_effort
@@ -178,28 +182,18 @@ def revolution(options: argparse.Namespace) -> None:
     scene, directory = scene_of(options), options.out
     check_place(directory)
     if isinstance(scene, DoubleHelicalScene):
-        _double_helical_revolution(scene, directory)
-        return
-    require_place_of(directory, REVOLUTION_FILE)
-    effort = expected_revolution_effort(scene)
-    with progress_bar(effort, "states", effort.contacts // 2) as progress:
-        result = analyse_revolution(scene, progress=progress)
-    written = _new(result, directory, revolution_figures(result), files_beside_revolution())
-    print_summary(result.summary(), written)
-
-
-def _double_helical_revolution(scene: DoubleHelicalScene, directory: Path) -> None:
-    """Analyse a whole revolution of a double helical pair, write everything, and show the summary."""
-    from loaded_tca.double_helical import analyse_double_helical_revolution
-    from loaded_tca.double_helical.result import PAIR_REVOLUTION_FILE
-    from loaded_tca.double_helical.revolution import expected_halves_revolution_effort
-    from loaded_tca.plots import halves_revolution_figures
-
-    require_place_of(directory, PAIR_REVOLUTION_FILE)
-    effort = expected_halves_revolution_effort(scene)
-    with progress_bar(effort, "states of both halves", effort.contacts // 2) as progress:
-        result = analyse_double_helical_revolution(scene, progress=progress)
-    written = _new(result, directory, halves_revolution_figures(result), files_beside_revolution())
+        require_place_of(directory, PAIR_REVOLUTION_FILE)
+        states, effort = "states of both halves", expected_halves_revolution_effort(scene)
+    else:
+        require_place_of(directory, REVOLUTION_FILE)
+        states, effort = "states", expected_revolution_effort(scene)
+    with progress_bar(effort, states, effort.contacts // 2) as progress:
+        result = analyse_revolution(scene, progress)
+    if isinstance(result, DoubleHelicalRevolution):
+        figures = halves_revolution_figures(result)
+    else:
+        figures = revolution_figures(result)
+    written = _new(result, directory, figures, files_beside_revolution())
     print_summary(result.summary(), written)
 
 

@@ -157,16 +157,7 @@ class ToothCompliance:
         The finite element models stay: the deflection follows the places of the forces on the flanks, which are found
         on both sides of each key. How it follows them is found once for all keys.
 
-        Parameters
-        ----------
-        contacts : sequence of (int, ContactGrid)
-            Numbers of tooth pairs and grids of their contacts, as in :meth:`within`.
-        state : (contacts,) int array
-            That each belongs to, state by state; contacts of one state displace each other.
-        forces : (n,) array [N]
-            On the slices of all contacts, in one row; where there are none, the growth is left out.
-        moved : sequence of MovedSlices
-            With each key, the slices of all contacts.
+        Parameters are those of :class:`loaded_tca.compliance.model.BendingPart`.
         """
         grids = [grid for _, grid in contacts]
         numbers, sizes = np.array([number for number, _ in contacts]), [len(grid.y) for grid in grids]

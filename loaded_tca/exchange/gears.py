@@ -45,9 +45,9 @@ RACK = {
 }
 """Numbers of a basic rack -> attributes of the tool that cuts it: over the module, and as a length."""
 TORQUE_DIGITS = 9
+"""Of torques that follow from a balance [N m]."""
 ROUNDING = 1e-9
 """Relative difference of two torques that are the same."""
-"""Of torques that follow from a balance [N m]."""
 DIGITS = 6
 """Of amounts in um: digits of mm in files end in rounding."""
 

@@ -168,6 +168,14 @@ class HypoidCones:
         )
         return first, second
 
+    def mean_normal_modules(self, teeth: tuple[int, int], spiral_angles: Both) -> Both:
+        """m_mn = 2 r cos(beta)/z of both gears [mm]; one number where they roll on each other."""
+        first, second = (
+            2.0 * radius * cos(spiral) / count
+            for radius, spiral, count in zip(self.radii, spiral_angles, teeth, strict=True)
+        )
+        return first, second
+
     @property
     def shaft_angle(self) -> float:
         """Sigma [rad]."""

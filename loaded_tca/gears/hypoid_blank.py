@@ -145,10 +145,7 @@ class HypoidBlank(BlankPair):
     def _require_own_cones(self) -> None:
         """Refuse pitch cones of another pair."""
         found = {name: getattr(self.pitch_cones, name) for name in ("face_width", "cutter_radius")}
-        modules = [
-            2.0 * radius * cos(spiral) / teeth
-            for radius, spiral, teeth in zip(self.cones.radii, self.pitch_cones.spiral_angles, self.teeth, strict=True)
-        ]
+        modules = self._mean_normal_modules
         require(
             *(
                 (
@@ -174,7 +171,12 @@ class HypoidBlank(BlankPair):
     @property
     def mean_normal_module(self) -> float:
         """m_mn, of the wheel [mm]."""
-        return 2.0 * self.cones.radii[1] * cos(self.pitch_cones.spiral_angles[1]) / self.teeth[1]
+        return self._mean_normal_modules[1]
+
+    @property
+    def _mean_normal_modules(self) -> tuple[float, float]:
+        """Those of both gears [mm]."""
+        return self.cones.mean_normal_modules(self.teeth, self.pitch_cones.spiral_angles)
 
     @cached_property
     def limit_pressure_angle(self) -> float:

@@ -29,6 +29,7 @@ from loaded_tca.reports.revolution_page import revolution_content
 from loaded_tca.results.comparison import Comparison
 from loaded_tca.results.files import STUDY, FilePath, make_directory, replace_file
 from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.result import AnalysisResult
 from loaded_tca.results.revolution import OverTurns
 from loaded_tca.results.summary import shown, shown_torque
 from loaded_tca.results.warnings import without_place
@@ -148,20 +149,16 @@ def write_html_report(
     with one_thread():  # sums of several threads differ in their last digits each time
         if isinstance(subject, MeshCycle):
             template, content = "result.html.j2", result_content(subject, coast)
-            date = date or subject.date
         elif isinstance(subject, Comparison):
             template, content = "comparison.html.j2", comparison_content(subject, torque)
         elif isinstance(subject, DesignResult):
             template, content = "design.html.j2", design_content(subject)
         elif isinstance(subject, DoubleHelicalResult):
             template, content = "double_helical.html.j2", double_helical_content(subject)
-            date = date or subject.date
         elif isinstance(subject, StageResult):
             template, content = "stage.html.j2", stage_content(subject)
-            date = date or subject.date
         elif isinstance(subject, OverTurns):
             template, content = "revolution.html.j2", revolution_content(subject)
-            date = date or subject.date
         elif is_study:
             template, content = "study.html.j2", study_content(subject, rank_by, axes)
         else:
@@ -169,8 +166,8 @@ def write_html_report(
                 f"report: found a {type(subject).__name__}; allowed a result, a whole revolution, a comparison, a "
                 "stage, a double helical pair, a study or a design"
             )
-    content = {"version": version("loaded_tca"), **content}
-    content["date"] = page.shown_date(date)
+    analysed = subject.date if isinstance(subject, AnalysisResult) else None
+    content = {"version": version("loaded_tca"), **content, "date": page.shown_date(date or analysed)}
     text = page.render(template, **content)
     target = Path(path)
     make_directory(target.parent)

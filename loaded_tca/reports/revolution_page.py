@@ -42,8 +42,8 @@ def revolution_content(revolution: OverTurns) -> dict[str, Any]:
     ----------
     revolution : Revolution or DoubleHelicalRevolution
     """
-    labels = {name: label.replace("[um]", "[µm]") for name, label in revolution.labels().items()}
     torques, figures, sentences = revolution.torque.tolist(), revolution.key_figures(), revolution.sentences()
+    labels = revolution.labels()
     spectra = [revolution.spectrum(torque) for torque in range(len(torques))]
     return {
         "title": revolution.title or revolution.TITLE,

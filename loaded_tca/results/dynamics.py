@@ -123,7 +123,7 @@ def dynamics_of_revolution(revolution: Revolution) -> xarray.Dataset:
 
 
 def _dataset_of(result: CycleNumbers | Revolution, curves: Mapping[str, Any], caveat: str = "") -> xarray.Dataset:
-    """The dataset of curves with the numbers of the gears, some of which bevel gears lack, and with conventions."""
+    """The dataset of curves, with the numbers of the gears as far as these have them, and with conventions."""
     import xarray
 
     arrays = {**curves, **_constants_of(result)}
@@ -191,10 +191,10 @@ def _attributes_of(result: CycleNumbers | Revolution, caveat: str) -> dict[str, 
     """What stands beside the numbers: where they are from, and what their signs mean."""
     driving, analysis = "pinion" if result.gear_pair.driving > 0 else "wheel", result.scene.analysis
     held = ", from bores that are held rigid" if analysis.teeth_bend else ""
+    of_half = textwrap.fill(f"Only {result.left_out}.", LINE) if result.left_out else ""
     supported = ON_SUPPORTS if result.scene.is_supported else ""
-    of_half = [f"Only {line}." for line in filter(None, [result.left_out])]
-    caveats = *textwrap.wrap("".join(of_half), LINE), *filter(None, (supported, caveat))
-    lines = CONVENTIONS, f"The {driving} drives; {analysis.bending}{held}.", *caveats
+    about = CONVENTIONS, f"The {driving} drives; {analysis.bending}{held}."
+    lines = *about, *filter(None, (of_half, supported, caveat))
     return {"title": result.scene.title, "version": result.version, "conventions": "\n".join(lines)}
 
 

@@ -427,7 +427,7 @@ class Revolution(OverTurns):
     @cached_property
     def _index_deviations(self) -> tuple[Array, Array]:
         """Index deviations [mm] of the teeth of pinion (z1,) and wheel (z2,)."""
-        pinion, wheel = self.scene.tooth_deviations(self.scene.pair())
+        pinion, wheel = self.scene.tooth_deviations(self.gear_pair)
         return pinion.index, wheel.index
 
     def tables(self) -> dict[str, Callable[[], Columns]]:

@@ -80,9 +80,9 @@ def _pair_rows(mesh: FaceMilledMesh, flanks: tuple[GeneratedFlank, GeneratedFlan
 def _hypoid_rows(mesh: HypoidMesh, pinion: FlankAngles, wheel: FlankAngles) -> list[Row]:
     """Lines on the axes of a hypoid pair, on where its pitch cones stand on them, and how far its flanks fit these."""
     cones, blanks = mesh.cones, (mesh.pinion.blank, mesh.wheel.blank)
-    spirals = cones.rolling_spiral_angles((mesh.pinion.teeth, mesh.wheel.teeth))
-    limit = limit_pressure_angle(cones, spirals)
-    module = 2.0 * cones.radii[1] * cos(spirals[1]) / mesh.wheel.teeth
+    teeth = mesh.pinion.teeth, mesh.wheel.teeth
+    spirals = cones.rolling_spiral_angles(teeth)
+    limit, module = limit_pressure_angle(cones, spirals), cones.mean_normal_modules(teeth, spirals)[1]
     misses = abs(pinion.spiral) - abs(wheel.spiral) - cones.offset_angle, pinion.pressure - wheel.pressure
     ends = [(blank.outer_cone_distance, blank.mean_cone_distance, blank.cone_distances[0]) for blank in blanks]
     return [

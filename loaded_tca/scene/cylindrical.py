@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import chain
 from typing import Any, ClassVar, Literal
 
 from loaded_tca.arrays import GEARS
@@ -30,7 +31,7 @@ from loaded_tca.scene.rows import Label, fixed
 from loaded_tca.scene.section import Rule, Section, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, AMOUNT_um, DIAMETER_mm, ERROR_deg, ERROR_mm, Pair, SLOPE_um, below
 from loaded_tca.scene.standards import ContactStandard, contact_standard, slope_tolerances
-from loaded_tca.scene.thickness import gear_of, odd_backlash, odd_thickness, thickness_rows
+from loaded_tca.scene.thickness import gear_of, odd_backlash, thickness_rows
 from loaded_tca.scene.tools import (
     ADDENDUM,
     DEDENDUM,
@@ -42,7 +43,7 @@ from loaded_tca.scene.tools import (
     cut_parameters,
     needs_protuberance,
     needs_stock,
-    odd_tip,
+    odd_teeth,
     rack_rows,
     shortening,
     tip_alteration,
@@ -322,11 +323,8 @@ class CylindricalScene(BlankScene):
         mesh, sections = self.mesh(), (self.pinion, self.wheel)
         absent = [own.profile_shift is None for own in sections]
         follows = self.geometry.centre_distance_mm is not None and sum(absent) == 1
-        sentences = []
-        for gear, own, default in zip((mesh.pinion, mesh.wheel), sections, absent, strict=True):
-            thick = odd_thickness(gear, own.profile_shift, follows=follows)
-            sentences += thick or (odd_tip(gear, own) if default and not follows else [])
-        return [*sentences, *odd_backlash(mesh)]
+        gears = zip((mesh.pinion, mesh.wheel), sections, strict=True)
+        return [*chain.from_iterable(odd_teeth(*gear, follows=follows) for gear in gears), *odd_backlash(mesh)]
 
     @property
     def pairs_in_contact(self) -> float:

@@ -27,8 +27,8 @@ from loaded_tca.scene.pitch import REVOLUTION_RULES
 from loaded_tca.scene.rows import Label, fixed
 from loaded_tca.scene.section import Rule, refusal, rule, subsection
 from loaded_tca.scene.sections import SLOPE_um
-from loaded_tca.scene.thickness import gear_of, odd_thickness
-from loaded_tca.scene.tools import odd_tip
+from loaded_tca.scene.thickness import gear_of
+from loaded_tca.scene.tools import odd_teeth
 
 LENGTH_mm = above_zero(100000.0)
 
@@ -322,9 +322,7 @@ class RackScene(CylindricalScene):
 
     def missing_shifts(self) -> Sequence[str]:
         """Return a sentence where the teeth of the pinion look as if their profile shift were not given."""
-        follows = self.geometry.distance_mm is not None
-        thick = odd_thickness(self._gear, self.pinion.profile_shift, follows=follows)
-        return thick or (odd_tip(self._gear, self.pinion) if self.pinion.profile_shift is None and not follows else [])
+        return odd_teeth(self._gear, self.pinion, follows=self.geometry.distance_mm is not None)
 
     def interferences(self) -> Sequence[str]:
         """Return how pinion and rack interfere at their distance, its error included, and what an undercut takes."""

@@ -134,11 +134,15 @@ def as_measured(gear: GearType, own: MeasuredSection, **inside: Any) -> GearType
 
     ``inside``: fields that this gear has, and the one with nominal thickness does not.
     """
+
+    def with_allowance(allowance: float) -> GearType:
+        return replace(gear, thickness_allowance=allowance, **inside)
+
     if own.normal_tooth_thickness_mm is not None:
-        return replace(gear, thickness_allowance=allowance_of_thickness(gear, own.normal_tooth_thickness_mm), **inside)
+        return with_allowance(allowance_of_thickness(gear, own.normal_tooth_thickness_mm))
     if own.span_measurement_mm is not None:
         teeth = own.span_teeth or gear.span_teeth
-        measured = replace(gear, thickness_allowance=allowance_of_span(gear, own.span_measurement_mm, teeth), **inside)
+        measured = with_allowance(allowance_of_span(gear, own.span_measurement_mm, teeth))
         measured.span_measurement(teeth)  # refuses a span that touches no flank
         return measured
     for measurement, diameter, allowance_of, measured_over in (
@@ -146,7 +150,7 @@ def as_measured(gear: GearType, own: MeasuredSection, **inside: Any) -> GearType
         (own.pin_measurement_mm, own.pin_diameter_mm, allowance_of_pins, MeasuredGear.pin_measurement),
     ):
         if measurement is not None and diameter is not None:
-            measured = replace(gear, thickness_allowance=allowance_of(gear, measurement, diameter), **inside)
+            measured = with_allowance(allowance_of(gear, measurement, diameter))
             measured_over(measured, diameter)  # refuses balls and pins that touch no flank
             return measured
     return gear

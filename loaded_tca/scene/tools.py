@@ -17,7 +17,7 @@ from loaded_tca.scene.keys import Choice, Either, Number, above_zero, key
 from loaded_tca.scene.rows import fixed
 from loaded_tca.scene.section import Rule
 from loaded_tca.scene.sections import DIAMETER_mm
-from loaded_tca.scene.thickness import MeasuredSection
+from loaded_tca.scene.thickness import MeasuredSection, odd_thickness
 
 if TYPE_CHECKING:
     from loaded_tca.scene.cylindrical import Geometry
@@ -208,6 +208,15 @@ def odd_tip(gear: CylindricalGear | RingGear, own: CutSection) -> list[str]:
     if own.tip_diameter_mm is None or alteration <= LONGEST_TIP:
         return []
     return [kinds.LONG_TIP.sentence(gear=gear.name, alteration=alteration, shift=gear.profile_shift + alteration)]
+
+
+def odd_teeth(gear: CylindricalGear | RingGear, own: CutSection, *, follows: bool) -> list[str]:
+    """Sentences on a gear whose teeth look as if a profile shift of theirs were not given.
+
+    ``follows``: whether one that is not given follows from the centre distance, and the tips with it.
+    """
+    thick = odd_thickness(gear, own.profile_shift, follows=follows)
+    return thick or (odd_tip(gear, own) if own.profile_shift is None and not follows else [])
 
 
 def rack_rows(mesh: CylindricalMesh | InternalMesh) -> list[Row]:

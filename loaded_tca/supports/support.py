@@ -314,15 +314,7 @@ class SupportCompliance:
     ) -> Array:
         """Growth (keys, n) [mm per unit] of the deflection of slices under forces as they are, as gears and grids move.
 
-        Parameters
-        ----------
-        contacts : sequence of (int, ContactGrid)
-        state : (contacts,) int array
-            That each contact belongs to, state by state.
-        forces : (n,) array [N]
-            On the slices of all contacts, in one row.
-        moved : sequence of MovedSlices
-            With each key, the slices of all contacts.
+        Parameters are those of :class:`loaded_tca.compliance.model.BendingPart`.
         """
         of_slices, growth = np.repeat(state, [len(grid.y) for _, grid in contacts]), []
         first, states = np.flatnonzero(np.diff(of_slices, prepend=-1)), np.unique(of_slices, return_inverse=True)[1]

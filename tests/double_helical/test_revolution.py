@@ -106,7 +106,7 @@ def test_without_load_the_half_that_touches_first_leads_gears_that_are_held(hold
 
 
 def test_command_writes_both_halves_with_orders_of_the_shuttling(wobbling, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("loaded_tca.double_helical.analyse_double_helical_revolution", lambda *_, **__: wobbling)
+    monkeypatch.setattr("loaded_tca.revolution.analyse_revolution", lambda *_, **__: wobbling)
     monkeypatch.setattr("loaded_tca.plots.png_of", lambda _: b"")
     (tmp_path / "scene.toml").write_text(wobbling.scene.to_toml())
     stale = tmp_path / "out" / "half_b_revolution" / "dynamics_orders.csv"
